@@ -1,0 +1,77 @@
+//! The state of bodies: what a method advances.
+
+use super::lanes::{QuaternionLanes, Vector3Lanes};
+use nalgebra::{Quaternion, Vector3};
+
+/// The state of one body.
+///
+/// The *reference point* is the centre of mass of a free body and the pivot of a held one: the
+/// point about which torque and inertia are taken. The attitude is that of the *principal axes*
+/// through that point, in which the inertia tensor is diagonal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Reference point, world, m.
+    pub x_w: Vector3<f64>,
+    /// Velocity of the reference point, world, m/s.
+    pub v_w: Vector3<f64>,
+    /// Attitude, principal axes → world, unit.
+    pub q_wp: Quaternion<f64>,
+    /// Angular velocity, world, rad/s.
+    pub omega_w: Vector3<f64>,
+}
+
+impl State {
+    /// Takes a vector from principal axes to the world: `v + 2 u × (u × v + w v)`, q = (u, w) unit.
+    #[inline(always)]
+    pub fn to_world(&self, v_p: Vector3<f64>) -> Vector3<f64> {
+        rotate(self.q_wp.imag(), self.q_wp.w, v_p)
+    }
+
+    /// Takes a vector from the world to principal axes: the same with the conjugate.
+    #[inline(always)]
+    pub fn to_principal(&self, v_w: Vector3<f64>) -> Vector3<f64> {
+        rotate(-self.q_wp.imag(), self.q_wp.w, v_w)
+    }
+
+    /// True where every component is finite.
+    pub fn is_finite(&self) -> bool {
+        let vectors = [self.x_w, self.v_w, self.omega_w];
+        vectors.iter().flatten().all(|c| c.is_finite())
+            && self.q_wp.coords.iter().all(|c| c.is_finite())
+    }
+}
+
+#[inline(always)]
+fn rotate(u: Vector3<f64>, w: f64, v: Vector3<f64>) -> Vector3<f64> {
+    let t = u.cross(&v) * 2.0;
+    v + t * w + u.cross(&t)
+}
+
+/// The states of eight bodies. Lanes without a body rest at the origin.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StateBlock {
+    x_w: Vector3Lanes,
+    v_w: Vector3Lanes,
+    q_wp: QuaternionLanes,
+    omega_w: Vector3Lanes,
+}
+
+impl StateBlock {
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> State {
+        State {
+            x_w: self.x_w.get(lane),
+            v_w: self.v_w.get(lane),
+            q_wp: self.q_wp.get(lane),
+            omega_w: self.omega_w.get(lane),
+        }
+    }
+
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, state: State) {
+        self.x_w.set(lane, state.x_w);
+        self.v_w.set(lane, state.v_w);
+        self.q_wp.set(lane, state.q_wp);
+        self.omega_w.set(lane, state.omega_w);
+    }
+}

@@ -1,0 +1,77 @@
+//! Level 7: the command line. One file per verb; the only place that says `clap`.
+//!
+//! stdout carries results, stderr errors. Exit code 0: done; 1: it failed while running;
+//! 2: the command, the scene or the file it names is wrong, and nothing was recorded.
+
+mod check;
+mod lists;
+mod print;
+mod run;
+mod scenes;
+mod view;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// A live visual debugger for rigid-body rotation.
+///
+/// Steps a scripted scene and records every body's pose, torque, angular acceleration and world
+/// inertia, to be scrubbed through in the viewer that this program carries.
+#[derive(Parser)]
+#[command(
+    name = "torquescope",
+    version,
+    after_help = "Start with: torquescope run scenes/cone.toml --view"
+)]
+struct Arguments {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    Run(run::Arguments),
+    View(view::Arguments),
+    Check(check::Arguments),
+    Scenes(scenes::Arguments),
+    /// List the integration methods: order, what they preserve, citation.
+    Methods(lists::Arguments),
+    /// List the effects that a scene's [effects] can name.
+    Effects(lists::Arguments),
+    /// List the streams that a scene's [record] can choose, with unit and frame.
+    Streams(lists::Arguments),
+    /// List the solids that a body's shape can name.
+    Solids(lists::Arguments),
+}
+
+/// The whole program.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let done = match arguments.verb {
+        Verb::Run(arguments) => run::run(&arguments),
+        Verb::View(arguments) => view::run(&arguments),
+        Verb::Check(arguments) => check::run(&arguments),
+        Verb::Scenes(arguments) => scenes::run(&arguments),
+        Verb::Methods(arguments) => lists::methods(&arguments),
+        Verb::Effects(arguments) => lists::effects(&arguments),
+        Verb::Streams(arguments) => lists::streams(&arguments),
+        Verb::Solids(arguments) => lists::solids(&arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error:#}");
+            ExitCode::from(code(&error))
+        }
+    }
+}
+
+/// The command or what it names is wrong.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct Wrong(String);
+
+fn code(error: &anyhow::Error) -> u8 {
+    let input = error.is::<crate::scene::SceneError>() || error.is::<Wrong>();
+    if input { 2 } else { 1 }
+}

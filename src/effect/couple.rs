@@ -1,0 +1,19 @@
+//! A pure torque on one body: a motor, or a couple of equal and opposite forces.
+
+use super::{Effect, Frame, WrenchBlock};
+use crate::body::{InertialBlock, StateBlock};
+
+/// A torque on one lane of a block while it lasts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Couple {
+    pub lane: usize,
+    /// N·m.
+    pub torque: Frame,
+}
+
+impl Effect for Couple {
+    fn add(&self, _t: f64, _: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {
+        let tau_w = self.torque.vector_w(&state.get(self.lane));
+        wrench.add_torque(self.lane, tau_w);
+    }
+}

@@ -1,0 +1,43 @@
+//! Uniform gravity: force `m g` at the centre of mass.
+//!
+//! About the reference point the torque is `(R c) × m g`, c from there to the centre of mass:
+//! nothing for a free body, the weight's lever arm for one held at a pivot. A body of infinite
+//! mass is not moved.
+
+use super::{Argument, Called, Effect, EffectKind, Value, WrenchBlock};
+use crate::body::{InertialBlock, LANES, StateBlock};
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+pub const KIND: EffectKind = EffectKind {
+    name: "gravity",
+    argument: Argument::Vector("m/s²"),
+    equation: "F = m g at the centre of mass",
+    about: "uniform gravity on every body; about a pivot it turns as (R c) × m g",
+    make: |value, _| match value {
+        Value::Vector(g) if g.norm_squared() > 0.0 => {
+            Ok(Called::Load(Arc::new(Gravity { g_w: *g })))
+        }
+        _ => Ok(Called::Off),
+    },
+};
+
+#[derive(Debug)]
+struct Gravity {
+    /// World, m/s².
+    g_w: Vector3<f64>,
+}
+
+impl Effect for Gravity {
+    fn add(&self, _t: f64, inertial: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {
+        for lane in 0..LANES {
+            let (body, state) = (inertial.get(lane), state.get(lane));
+            let weight_w = self.g_w * body.mass;
+            wrench.add(
+                lane,
+                weight_w,
+                state.to_world(body.centre_p).cross(&weight_w),
+            );
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Everything that acts on one block of bodies, between two events.
+
+use super::{Decay, Effect};
+use crate::body::{InertialBlock, State, StateBlock, Vector3Lanes};
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+/// A force and a torque about the reference point, world axes, N and N·m.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    pub force_w: Vector3<f64>,
+    pub tau_w: Vector3<f64>,
+}
+
+/// The wrenches on eight bodies.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WrenchBlock {
+    force_w: Vector3Lanes,
+    tau_w: Vector3Lanes,
+}
+
+impl WrenchBlock {
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Wrench {
+        Wrench {
+            force_w: self.force_w.get(lane),
+            tau_w: self.tau_w.get(lane),
+        }
+    }
+
+    #[inline(always)]
+    pub fn add(&mut self, lane: usize, force_w: Vector3<f64>, tau_w: Vector3<f64>) {
+        self.force_w.add(lane, force_w);
+        self.tau_w.add(lane, tau_w);
+    }
+
+    #[inline(always)]
+    pub fn add_torque(&mut self, lane: usize, tau_w: Vector3<f64>) {
+        self.tau_w.add(lane, tau_w);
+    }
+}
+
+/// The effects present on one block. Empty where nothing acts.
+#[derive(Clone, Debug, Default)]
+pub struct Load {
+    effects: Vec<Arc<dyn Effect>>,
+    decay: Option<Decay>,
+}
+
+impl Load {
+    pub fn push(&mut self, effect: Arc<dyn Effect>) {
+        self.effects.push(effect);
+    }
+
+    pub fn set_decay(&mut self, decay: Decay) {
+        self.decay = Some(decay);
+    }
+
+    /// Exponential decay of the velocities, where the scene has it.
+    pub fn decay(&self) -> Option<&Decay> {
+        self.decay.as_ref()
+    }
+
+    /// The sum of all effects, summed in the order they were added.
+    pub fn wrench(&self, t: f64, inertial: &InertialBlock, state: &StateBlock) -> WrenchBlock {
+        self.sum(t, inertial, state, |_| true)
+    }
+
+    /// The sum of the effects that something applies: without inertial ones, without decay.
+    pub fn applied(&self, t: f64, inertial: &InertialBlock, state: &StateBlock) -> WrenchBlock {
+        self.sum(t, inertial, state, |effect| !effect.is_inertial())
+    }
+
+    fn sum(
+        &self,
+        t: f64,
+        inertial: &InertialBlock,
+        state: &StateBlock,
+        keep: impl Fn(&dyn Effect) -> bool,
+    ) -> WrenchBlock {
+        let mut wrench = WrenchBlock::default();
+        for effect in self.effects.iter().filter(|effect| keep(effect.as_ref())) {
+            effect.add(t, inertial, state, &mut wrench);
+        }
+        wrench
+    }
+}
+
+/// The axes in which a vector or a point is given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Frame {
+    /// Fixed in space.
+    World(Vector3<f64>),
+    /// Turning with the body: principal axes; a point counts from the reference point.
+    Principal(Vector3<f64>),
+}
+
+impl Frame {
+    /// The direction in world axes.
+    #[inline]
+    pub fn vector_w(&self, state: &State) -> Vector3<f64> {
+        match *self {
+            Frame::World(v) => v,
+            Frame::Principal(v) => state.to_world(v),
+        }
+    }
+
+    /// The point in the world.
+    #[inline]
+    pub fn point_w(&self, state: &State) -> Vector3<f64> {
+        match *self {
+            Frame::World(p) => p,
+            Frame::Principal(p) => state.x_w + state.to_world(p),
+        }
+    }
+}

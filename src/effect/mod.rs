@@ -1,0 +1,79 @@
+//! Level 2: what acts on bodies. One file per effect, one line in [`EFFECTS`].
+//!
+//! An effect that a scene does not name is absent from the run: the list that a method asks for
+//! forces simply does not hold it.
+
+mod couple;
+mod damping;
+mod gravity;
+mod gyroscopic;
+mod load;
+mod push;
+
+pub use couple::Couple;
+pub use damping::Decay;
+pub use load::{Frame, Load, Wrench, WrenchBlock};
+pub use push::Push;
+
+use crate::body::{InertialBlock, StateBlock};
+use nalgebra::Vector3;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// A source of force and torque on a block of bodies.
+pub trait Effect: Debug + Send + Sync {
+    /// Adds this effect's force (N) and torque about the reference point (N·m), world axes,
+    /// at time `t` (s) and the given states.
+    fn add(&self, t: f64, inertial: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock);
+
+    /// True for what the choice of coordinates brings, such as `-ω × I ω`: it turns bodies but
+    /// nothing outside applies it, so the torque stream leaves it out.
+    fn is_inertial(&self) -> bool {
+        false
+    }
+}
+
+/// A named effect as a scene calls for it.
+#[derive(Clone, Debug)]
+pub enum Called {
+    /// A force or torque, on every body.
+    Load(Arc<dyn Effect>),
+    /// Exponential decay of the velocities, on every body.
+    Decay(Decay),
+    /// Named, but switched off.
+    Off,
+}
+
+/// What a scene writes for an effect.
+#[derive(Clone, Copy, Debug)]
+pub enum Argument {
+    /// `true` or `false`.
+    Switch,
+    /// Three numbers, in the unit named.
+    Vector(&'static str),
+    /// A table of numbers, each with its unit; one that is absent is `None`.
+    Table(&'static [(&'static str, &'static str)]),
+}
+
+/// An argument, read.
+#[derive(Clone, Debug)]
+pub enum Value {
+    Switch(bool),
+    Vector(Vector3<f64>),
+    Table(Vec<Option<f64>>),
+}
+
+/// How scenes name an effect and what it takes.
+pub struct EffectKind {
+    pub name: &'static str,
+    pub argument: Argument,
+    /// Its equation.
+    pub equation: &'static str,
+    /// What it does, in a sentence.
+    pub about: &'static str,
+    /// From the argument and the nominal step (s); the error says what is wrong with it.
+    pub make: fn(&Value, f64) -> Result<Called, String>,
+}
+
+/// Every effect that a scene's `[effects]` can name, in the order of the lists.
+pub const EFFECTS: &[&EffectKind] = &[&gravity::KIND, &damping::KIND, &gyroscopic::KIND];

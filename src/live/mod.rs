@@ -1,0 +1,3 @@
+//! Level 6: what is served to a browser.
+
+pub mod page;

@@ -1,0 +1,34 @@
+//! The solid sphere: `I = 2/5 m r²` about every axis.
+
+use super::{ProfilePoint, Solid, SolidKind, Surface, length, positive};
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+
+pub const KIND: SolidKind = SolidKind {
+    name: "sphere",
+    parameters: &[length("radius")],
+    about: "I = 2/5 m r²",
+    make: |p| {
+        positive(&[("radius", p[0])])?;
+        Ok(Box::new(Sphere { radius: p[0] }))
+    },
+};
+
+#[derive(Debug)]
+struct Sphere {
+    radius: f64,
+}
+
+impl Solid for Sphere {
+    fn moments(&self, mass: f64) -> Vector3<f64> {
+        Vector3::repeat(0.4 * mass * self.radius * self.radius)
+    }
+
+    fn volume(&self) -> Option<f64> {
+        Some(4.0 / 3.0 * PI * self.radius.powi(3))
+    }
+
+    fn surface(&self) -> Surface {
+        Surface::Revolution(vec![ProfilePoint::half_circle(self.radius)])
+    }
+}

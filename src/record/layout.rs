@@ -1,0 +1,446 @@
+//! How a recording opens: the project's own arrangement, not Rerun's default grid.
+//!
+//! The first tab holds everything at once: the picture, what to look for, plots of magnitudes by
+//! body, the numbers, the events. A tab per body isolates it, with its components and its page.
+
+use super::RecordError;
+use super::blueprint::{Blueprint, Part, View};
+use super::look;
+use super::mesh;
+use super::recorder::Heading;
+use super::rrd::RrdFile;
+use super::scale::{self, Scales};
+use crate::trace::Subject;
+use nalgebra::Vector3;
+use rerun::AsComponents;
+use rerun::archetypes::{Scalars, SeriesLines};
+use rerun::blueprint::VisualizerComponentMapping;
+use rerun::external::re_sdk_types::blueprint::archetypes as ba;
+use rerun::external::re_sdk_types::blueprint::components::{self as bc, ContainerKind};
+use rerun::external::re_sdk_types::{VisualizableArchetype as _, Visualizer, components};
+
+/// What the arrangement depends on.
+pub struct Setting<'a> {
+    pub heading: &'a Heading<'a>,
+    pub subjects: &'a [Subject],
+    pub scales: &'a Scales,
+}
+
+/// Bodies that get a tab of their own, and lines in the plots of all bodies: what can be read.
+const MOST_TABS: usize = 12;
+
+/// Samples of a line that a viewer draws one by one without effort.
+const MOST_UNTHINNED: f64 = 20_000.0;
+
+/// How long the shortest event is to be seen, in seconds of watching: playback slows for it.
+const SEEN_FOR: f64 = 0.5;
+
+/// The streams a plot shows, its title, the quantity by component, the quantity as one line.
+struct Plot {
+    stream: &'static str,
+    title: &'static str,
+    symbol: &'static str,
+    /// Three components, where it is a vector.
+    components: Option<&'static str>,
+    single: &'static str,
+}
+
+const PLOTS: [Plot; 4] = [
+    Plot {
+        stream: "torque",
+        title: "torque τ (N·m)",
+        symbol: "τ",
+        components: Some("torque"),
+        single: "torque_norm",
+    },
+    Plot {
+        stream: "alpha",
+        title: "angular acceleration α (rad/s²)",
+        symbol: "α",
+        components: Some("angular_acceleration"),
+        single: "angular_acceleration_norm",
+    },
+    Plot {
+        stream: "omega",
+        title: "angular velocity ω (rad/s)",
+        symbol: "ω",
+        components: Some("angular_velocity"),
+        single: "angular_velocity_norm",
+    },
+    Plot {
+        stream: "energy",
+        title: "kinetic energy E (J)",
+        symbol: "E",
+        components: None,
+        single: "kinetic_energy",
+    },
+];
+
+/// The text panel: what the scene shows, and how to read the picture.
+pub fn notes(setting: &Setting<'_>) -> String {
+    let heading = setting.heading;
+    let mut text = format!(
+        "# {}\n\n{}\n\n## Reading the picture\n\n",
+        heading.title, heading.notes
+    );
+    for (stream, factor) in setting.scales.sentences() {
+        let seen = stream != "force" || heading.has_pushes;
+        if heading.streams.contains(stream) && seen {
+            text += &format!("- {} ({factor})\n", meaning(stream));
+        }
+    }
+    if heading.streams.contains("inertia") {
+        text += "- **green ellipsoid**: uniform, with the body's mass and its inertia about the centre of mass (true size)\n";
+    }
+    if setting
+        .subjects
+        .iter()
+        .any(|subject| subject.pivot_b.is_some())
+    {
+        text += "- **grey dot**: a pivot; torque, inertia and angular momentum are then about it\n";
+    }
+    text + "\nA tab above for each body; every number in `/numbers/NAME`.\n"
+}
+
+fn meaning(stream: &str) -> &'static str {
+    match stream {
+        "force" => {
+            "**red arrow**: a push F, ending where it pushes; the thin line is its lever arm"
+        }
+        "torque" => "**purple, with a turning arrow**: torque τ about its axis",
+        "alpha" => "**amber arrow**: angular acceleration α",
+        "omega" => "**teal arrow**: angular velocity ω; hidden, its eye is in the blueprint panel",
+        _ => "**blue arrow**: angular momentum L; hidden, its eye is in the blueprint panel",
+    }
+}
+
+/// Writes the blueprint.
+pub fn write(file: &mut RrdFile, setting: &Setting<'_>) -> Result<(), RecordError> {
+    let mut blueprint = Blueprint::new(file);
+    let mut tabs = vec![overview(&mut blueprint, setting)?];
+    for (k, subject) in setting.subjects.iter().enumerate().take(MOST_TABS) {
+        tabs.push(body_tab(&mut blueprint, setting, k, subject)?);
+    }
+    let root = blueprint.container(ContainerKind::Tabs, setting.heading.title, &tabs, &[])?;
+    panels(&mut blueprint, setting.heading)?;
+    blueprint.finish(&root)
+}
+
+fn panels(blueprint: &mut Blueprint<'_>, heading: &Heading<'_>) -> Result<(), RecordError> {
+    let speed = heading
+        .shortest_event
+        .map_or(1.0, |s| scale::nice(s / SEEN_FOR).clamp(1e-3, 1.0));
+    let hidden = ba::PanelBlueprint::new().with_state(bc::PanelState::Hidden);
+    blueprint.log("blueprint_panel", &hidden)?;
+    blueprint.log("selection_panel", &hidden)?;
+    let time = ba::TimePanelBlueprint::new()
+        .with_state(bc::PanelState::Collapsed)
+        .with_timeline("sim_time")
+        .with_playback_speed(speed)
+        .with_loop_mode(bc::LoopMode::All)
+        .with_play_state(bc::PlayState::Paused);
+    blueprint.log("time_panel", &time)
+}
+
+fn overview(blueprint: &mut Blueprint<'_>, setting: &Setting<'_>) -> Result<Part, RecordError> {
+    let all: Vec<&Subject> = setting.subjects.iter().collect();
+    let contents = SPATIAL.iter().map(|q| format!("+ /{q}/**")).collect();
+    let picture = spatial(blueprint, setting, "all bodies", contents, &all)?;
+    let events = text_log(blueprint)?;
+    let pushes = state_timeline(blueprint)?;
+    let log = blueprint.container(ContainerKind::Tabs, "events", &[events, pushes], &[])?;
+    let left = blueprint.container(
+        ContainerKind::Vertical,
+        "picture",
+        &[picture, log],
+        &[5.0, 1.0],
+    )?;
+    let notes = document(blueprint, "what to look at", "/notes")?;
+    let mut texts = vec![notes];
+    if setting.heading.streams.contains("numbers") {
+        for subject in all.iter().take(MOST_TABS) {
+            texts.push(document(
+                blueprint,
+                &subject.label,
+                &format!("/pages/{}", subject.name),
+            )?);
+        }
+    }
+    let mut columns = vec![left];
+    let mut shares = vec![5.6];
+    let mut pages = vec![texts.remove(0)];
+    if !texts.is_empty() {
+        pages.push(blueprint.container(ContainerKind::Tabs, "numbers", &texts, &[])?);
+    }
+    columns.push(blueprint.container(
+        ContainerKind::Vertical,
+        "text",
+        &pages,
+        &[1.0, 1.0][..pages.len()],
+    )?);
+    shares.push(2.4);
+    let plots = magnitude_plots(blueprint, setting)?;
+    if !plots.is_empty() {
+        let rows = vec![1.0; plots.len()];
+        columns.push(blueprint.container(ContainerKind::Vertical, "plots", &plots, &rows)?);
+        shares.push(2.4);
+    }
+    blueprint.container(ContainerKind::Horizontal, "all bodies", &columns, &shares)
+}
+
+fn body_tab(
+    blueprint: &mut Blueprint<'_>,
+    setting: &Setting<'_>,
+    index: usize,
+    subject: &Subject,
+) -> Result<Part, RecordError> {
+    let name = &subject.name;
+    let mut contents: Vec<String> = SPATIAL
+        .iter()
+        .map(|q| format!("+ /{q}/{name}/**"))
+        .collect();
+    contents.push(format!("+ /bodies/{name}/**"));
+    let picture = spatial(blueprint, setting, &subject.label, contents, &[subject])?;
+    let mut columns = vec![picture];
+    let mut shares = vec![3.0];
+    if setting.heading.streams.contains("numbers") {
+        columns.push(document(
+            blueprint,
+            "numbers at the cursor",
+            &format!("/pages/{name}"),
+        )?);
+        shares.push(2.0);
+    }
+    let mut plots = Vec::new();
+    for plot in shown(setting) {
+        plots.push(component_plot(
+            blueprint,
+            setting.heading,
+            plot,
+            index,
+            subject,
+        )?);
+    }
+    if !plots.is_empty() {
+        let rows = vec![1.0; plots.len()];
+        columns.push(blueprint.container(ContainerKind::Vertical, "plots", &plots, &rows)?);
+        shares.push(2.4);
+    }
+    blueprint.container(ContainerKind::Horizontal, &subject.label, &columns, &shares)
+}
+
+/// What the picture holds, by quantity.
+const SPATIAL: [&str; 9] = [
+    "bodies", "labels", "pivots", "inertia", "force", "torque", "alpha", "omega", "momentum",
+];
+
+fn spatial(
+    blueprint: &mut Blueprint<'_>,
+    setting: &Setting<'_>,
+    name: &str,
+    contents: Vec<String>,
+    seen: &[&Subject],
+) -> Result<Part, RecordError> {
+    let (centre, reach) = bounds(seen, setting.scales.size);
+    // From the front, from the right and above, so that arrows along any axis have a length.
+    let from = centre + Vector3::new(0.3, 0.5, 1.0).normalize() * (1.65 * reach);
+    let point = |v: Vector3<f64>| components::Position3D::new(v.x as f32, v.y as f32, v.z as f32);
+    let eye = ba::EyeControls3D::new()
+        .with_kind(bc::Eye3DKind::Orbital)
+        .with_position(point(from))
+        .with_look_target(point(centre))
+        .with_eye_up(rerun::datatypes::Vec3D([0.0, 1.0, 0.0]));
+    let floor = floor(seen);
+    let grid = ba::LineGrid3D::new()
+        .with_visible(true)
+        .with_spacing(scale::nice(setting.scales.size) as f32)
+        .with_plane(components::Plane3D::new([0.0, 1.0, 0.0], floor as f32))
+        .with_color(look::GRID)
+        .with_stroke_width(1.0);
+    let properties: Vec<(&'static str, &dyn AsComponents)> =
+        vec![("EyeControls3D", &eye), ("LineGrid3D", &grid)];
+    blueprint.view(View {
+        class: "3D",
+        name,
+        origin: "/",
+        contents,
+        properties,
+        visualizers: Vec::new(),
+        hidden: vec!["/omega".to_owned(), "/momentum".to_owned()],
+    })
+}
+
+/// The middle of the bodies and the distance from there to the farthest part.
+fn bounds(seen: &[&Subject], size: f64) -> (Vector3<f64>, f64) {
+    let starts = seen.iter().map(|s| s.start.position_w);
+    let low = starts
+        .clone()
+        .fold(Vector3::repeat(f64::INFINITY), |a, b| a.inf(&b));
+    let high = starts.fold(Vector3::repeat(f64::NEG_INFINITY), |a, b| a.sup(&b));
+    let centre = (low + high) * 0.5;
+    let reach = 0.5 * (high - low).norm() + 1.8 * size;
+    match centre.iter().all(|x| x.is_finite()) && reach.is_finite() {
+        true => (centre, reach),
+        false => (Vector3::zeros(), 5.0 * size),
+    }
+}
+
+/// The height of the ground grid: under the lowest body as it starts.
+fn floor(seen: &[&Subject]) -> f64 {
+    let low = seen
+        .iter()
+        .map(|s| mesh::lowest(s))
+        .fold(f64::INFINITY, f64::min);
+    if low.is_finite() { low } else { 0.0 }
+}
+
+fn shown<'s>(setting: &'s Setting<'_>) -> impl Iterator<Item = &'static Plot> + 's {
+    PLOTS
+        .iter()
+        .filter(|plot| setting.heading.streams.contains(plot.stream))
+}
+
+/// One plot a quantity, one line a body.
+fn magnitude_plots(
+    blueprint: &mut Blueprint<'_>,
+    setting: &Setting<'_>,
+) -> Result<Vec<Part>, RecordError> {
+    let mut plots = Vec::new();
+    for plot in shown(setting) {
+        let lines = setting.subjects.iter().enumerate().take(MOST_TABS);
+        let visualizers = lines.map(|(k, subject)| {
+            let colour = look::BODIES[k % look::BODIES.len()];
+            let series = SeriesLines::new()
+                .with_names([subject.name.as_str()])
+                .with_colors([colour])
+                .with_widths([1.5_f32]);
+            (
+                numbers(subject),
+                vec![line(setting.heading, series, plot.single)],
+            )
+        });
+        let title = match plot.components {
+            Some(_) => format!("|{}|, {}", plot.symbol, plot.title),
+            None => plot.title.to_owned(),
+        };
+        plots.push(time_series(blueprint, &title, visualizers.collect())?);
+    }
+    Ok(plots)
+}
+
+/// The components of one body's vector.
+fn component_plot(
+    blueprint: &mut Blueprint<'_>,
+    heading: &Heading<'_>,
+    plot: &Plot,
+    index: usize,
+    subject: &Subject,
+) -> Result<Part, RecordError> {
+    let visualizer = match plot.components {
+        Some(quantity) => {
+            let names = ["x", "y", "z"].map(|axis| format!("{}.{axis}", plot.symbol));
+            let series = SeriesLines::new()
+                .with_names(names)
+                .with_colors(look::COMPONENTS)
+                .with_widths([1.5_f32; 3]);
+            line(heading, series, quantity)
+        }
+        None => {
+            let series = SeriesLines::new()
+                .with_names([plot.symbol])
+                .with_colors([look::BODIES[index % look::BODIES.len()]])
+                .with_widths([1.5_f32]);
+            line(heading, series, plot.single)
+        }
+    };
+    time_series(
+        blueprint,
+        plot.title,
+        vec![(numbers(subject), vec![visualizer])],
+    )
+}
+
+fn numbers(subject: &Subject) -> String {
+    format!("/numbers/{}", subject.name)
+}
+
+/// A line drawn from one of the number columns.
+fn line(heading: &Heading<'_>, mut series: SeriesLines, quantity: &str) -> Visualizer {
+    // Rerun thins what falls on one pixel to its least and greatest value, in that order, and so
+    // draws a step down as a spike. A recording short enough is drawn as it is.
+    if heading.duration * heading.rate <= MOST_UNTHINNED {
+        series = series.with_aggregation_policy(components::AggregationPolicy::Off);
+    }
+    let scalars = Scalars::descriptor_scalars().component;
+    let mapping = VisualizerComponentMapping::new_source_component(scalars, quantity);
+    series.visualizer().with_mappings([mapping.into()])
+}
+
+fn time_series(
+    blueprint: &mut Blueprint<'_>,
+    name: &str,
+    visualizers: Vec<(String, Vec<Visualizer>)>,
+) -> Result<Part, RecordError> {
+    let legend = ba::PlotLegend::new().with_corner(bc::Corner2D::RightTop);
+    let contents = visualizers
+        .iter()
+        .map(|(entity, _)| format!("+ {entity}"))
+        .collect();
+    blueprint.view(View {
+        class: "TimeSeries",
+        name,
+        origin: "/numbers",
+        contents,
+        properties: vec![("PlotLegend", &legend)],
+        visualizers,
+        hidden: Vec::new(),
+    })
+}
+
+fn document(blueprint: &mut Blueprint<'_>, name: &str, path: &str) -> Result<Part, RecordError> {
+    plain(
+        blueprint,
+        "TextDocument",
+        name,
+        path,
+        vec![format!("+ {path}")],
+    )
+}
+
+fn text_log(blueprint: &mut Blueprint<'_>) -> Result<Part, RecordError> {
+    plain(
+        blueprint,
+        "TextLog",
+        "events",
+        "/events",
+        vec!["+ /events".to_owned()],
+    )
+}
+
+fn state_timeline(blueprint: &mut Blueprint<'_>) -> Result<Part, RecordError> {
+    plain(
+        blueprint,
+        "StateTimeline",
+        "when pushes act",
+        "/events",
+        vec!["+ /events/**".to_owned()],
+    )
+}
+
+fn plain(
+    blueprint: &mut Blueprint<'_>,
+    class: &'static str,
+    name: &str,
+    origin: &str,
+    contents: Vec<String>,
+) -> Result<Part, RecordError> {
+    blueprint.view(View {
+        class,
+        name,
+        origin,
+        contents,
+        properties: Vec::new(),
+        visualizers: Vec::new(),
+        hidden: Vec::new(),
+    })
+}

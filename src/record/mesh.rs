@@ -1,0 +1,162 @@
+//! Surfaces as triangle meshes with normals, striped so that every turn is seen.
+
+use super::look::{self, Colour};
+use crate::mass::solids::{ProfilePoint, Surface};
+use crate::math::symmetric_eigen;
+use crate::trace::Subject;
+use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use rerun::archetypes::Mesh3D;
+
+/// Pieces round the axis, and stripes among them: a cone that spins about its own axis would
+/// look still in one colour.
+const ROUND: usize = 48;
+const STRIPES: usize = 8;
+
+/// A mesh in body axes about the centre of mass.
+pub fn mesh(subject: &Subject, colour: Colour) -> Mesh3D {
+    let faces = faces(subject, colour);
+    Mesh3D::new(faces.points)
+        .with_triangle_indices(faces.triangles)
+        .with_vertex_normals(faces.normals)
+        .with_vertex_colors(faces.colours)
+}
+
+/// The height of the body's lowest point as it starts, m.
+pub fn lowest(subject: &Subject) -> f64 {
+    let points = faces(subject, 0).points;
+    let up_b = subject.start.q_wb.inverse() * Vector3::y();
+    let height = |p: [f32; 3]| up_b.dot(&Vector3::from(p.map(f64::from)));
+    let low = points.into_iter().map(height).fold(f64::INFINITY, f64::min);
+    subject.start.position_w.y + low
+}
+
+fn faces(subject: &Subject, colour: Colour) -> Faces {
+    let (surface, shift) = match &subject.solid {
+        Some(solid) => (solid.surface(), -solid.centre()),
+        None => (Surface::Cuboid(equivalent_box(subject)), Vector3::zeros()),
+    };
+    let mut faces = Faces {
+        shift,
+        ..Faces::default()
+    };
+    match surface {
+        Surface::Cuboid(extents) => faces.cuboid(extents, colour),
+        Surface::Revolution(profile) => {
+            for piece in &profile {
+                faces.revolve(piece, colour);
+            }
+        }
+    }
+    faces
+}
+
+/// The distance from the centre of mass to the farthest point, m.
+pub fn radius(subject: &Subject) -> f64 {
+    let surface = subject
+        .solid
+        .as_ref()
+        .map(|solid| (solid.surface(), solid.centre().y));
+    match surface {
+        None => 0.5 * equivalent_box(subject).norm(),
+        Some((Surface::Cuboid(extents), _)) => 0.5 * extents.norm(),
+        Some((Surface::Revolution(profile), centre)) => profile
+            .iter()
+            .flatten()
+            .map(|point| point.at[0].hypot(point.at[1] - centre))
+            .fold(0.0, f64::max),
+    }
+}
+
+/// The ellipsoid of uniform density with the body's mass and inertia about its centre of mass:
+/// half axes `a_i² = 5/(2m) (I_j + I_k - I_i)`, and its attitude in the body.
+pub fn equivalent_ellipsoid(subject: &Subject) -> Option<(Vector3<f64>, UnitQuaternion<f64>)> {
+    let mass = subject.mass?;
+    let (axes, moments) = symmetric_eigen(&subject.inertia_c);
+    let squares = moments.map(|i| 2.5 / mass * (moments.sum() - 2.0 * i));
+    let rotation = Rotation3::from_matrix_unchecked(axes);
+    let half = squares.map(|square| square.max(0.0).sqrt());
+    Some((half, UnitQuaternion::from_rotation_matrix(&rotation)))
+}
+
+/// Full extents of the cuboid of the same inertia, for a body without a shape: the ellipsoid's
+/// half axes times `2 √(3/5)`; a cube of half a metre where the mass is infinite.
+fn equivalent_box(subject: &Subject) -> Vector3<f64> {
+    equivalent_ellipsoid(subject).map_or(Vector3::repeat(0.5), |(half, _)| {
+        half * (2.0 * 0.6_f64.sqrt())
+    })
+}
+
+#[derive(Default)]
+struct Faces {
+    shift: Vector3<f64>,
+    points: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    colours: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Faces {
+    /// Four corners, counter-clockwise from outside, each with its normal.
+    fn quad(&mut self, corners: [(Vector3<f64>, Vector3<f64>); 4], colour: Colour) {
+        let first = self.points.len() as u32;
+        for (point, normal) in corners {
+            self.points
+                .push((point + self.shift).map(|x| x as f32).into());
+            self.normals.push(normal.map(|x| x as f32).into());
+            self.colours.push(colour);
+        }
+        self.triangles.push([first, first + 1, first + 2]);
+        self.triangles.push([first, first + 2, first + 3]);
+    }
+
+    fn revolve(&mut self, profile: &[ProfilePoint], colour: Colour) {
+        let light = look::lightened(colour, 0.35);
+        let turned = |[radial, y]: [f64; 2], k: usize| {
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / ROUND as f64).sin_cos();
+            Vector3::new(radial * cos, y, radial * sin)
+        };
+        for pair in profile.windows(2) {
+            for k in 0..ROUND {
+                let colour = if (k * STRIPES / ROUND).is_multiple_of(2) {
+                    colour
+                } else {
+                    light
+                };
+                let corner = |p: &ProfilePoint, k| (turned(p.at, k), turned(p.normal, k));
+                let corners = [
+                    corner(&pair[0], k),
+                    corner(&pair[0], k + 1),
+                    corner(&pair[1], k + 1),
+                    corner(&pair[1], k),
+                ];
+                self.quad(corners, colour);
+            }
+        }
+    }
+
+    /// Each face in its own shade, so that a cuboid's attitude is plain.
+    fn cuboid(&mut self, extents: Vector3<f64>, colour: Colour) {
+        let half = extents * 0.5;
+        for axis in 0..3 {
+            for (side, shade) in [(1.0, 0.3), (-1.0, 0.0)] {
+                let mut normal = Vector3::zeros();
+                normal[axis] = side;
+                let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+                let corner = |a: f64, b: f64| {
+                    let mut point = normal * half[axis];
+                    point[u] = a * half[u];
+                    // Mirrored on the far side, which keeps the corners counter-clockwise.
+                    point[v] = b * side * half[v];
+                    (point, normal)
+                };
+                let corners = [
+                    corner(-1.0, -1.0),
+                    corner(1.0, -1.0),
+                    corner(1.0, 1.0),
+                    corner(-1.0, 1.0),
+                ];
+                self.quad(corners, look::lightened(colour, shade + 0.1 * axis as f32));
+            }
+        }
+    }
+}

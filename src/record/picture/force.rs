@@ -1,0 +1,79 @@
+//! Pushes: an arrow that ends at the point it pushes, and the lever arm from the reference point.
+
+use super::super::RecordError;
+use super::super::columns::{Ends, Times, strips};
+use super::super::look;
+use super::super::rrd::RrdFile;
+use super::Picture;
+use super::vector::{Arrows, Labels};
+use crate::trace::{Instant, Moment, Subject, short};
+use rerun::archetypes::{Arrows3D, LineStrips3D};
+use rerun::components::Radius;
+
+pub struct ForcePicture {
+    /// m per N.
+    scale: f64,
+    times: Times,
+    arrows: Arrows,
+    labels: Labels,
+    arms: Vec<f32>,
+    arm_points: Ends,
+}
+
+impl ForcePicture {
+    pub fn new(scale: f64) -> Self {
+        Self {
+            scale,
+            times: Times::default(),
+            arrows: Arrows::default(),
+            labels: Labels::default(),
+            arms: Vec::new(),
+            arm_points: Ends::default(),
+        }
+    }
+}
+
+impl Picture for ForcePicture {
+    fn statics(&self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
+        let arrows = Arrows3D::update_fields()
+            .with_colors([look::FORCE])
+            .with_radii([Radius::new_ui_points(look::BOLD)]);
+        let arms = LineStrips3D::update_fields()
+            .with_colors([look::FORCE])
+            .with_radii([Radius::new_ui_points(look::THIN)]);
+        let path = format!("/force/{}", subject.name);
+        file.statics(format!("{path}/arm"), &[&arms])?;
+        file.statics(format!("{path}/label"), &[&Labels::statics(look::FORCE)])?;
+        file.statics(path, &[&arrows])
+    }
+
+    fn row(&mut self, at: Instant, subject: &Subject, moment: &Moment) {
+        let reference = moment.reference_w(subject);
+        self.times.push(at);
+        for push in &moment.pushes {
+            let arrow = push.force_w * self.scale;
+            self.arrows.push(push.point_w - arrow, arrow);
+            let label = format!("F {} N", short(push.force_w.norm()));
+            self.labels.push(push.point_w - arrow * 1.12, label);
+            for end in [reference, push.point_w] {
+                self.arms.extend(end.iter().map(|&x| x as f32));
+            }
+            self.arm_points.push(2);
+        }
+        self.arrows.ends.push(moment.pushes.len());
+        self.labels.end_row(moment.pushes.len());
+    }
+
+    fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
+        let path = format!("/force/{}", subject.name);
+        let ends = self.arrows.ends.clone();
+        file.columns(path.as_str(), &self.times, self.arrows.take())?;
+        file.columns(format!("{path}/label"), &self.times, self.labels.take())?;
+        let arms = std::mem::take(&mut self.arms);
+        let points = std::mem::take(&mut self.arm_points);
+        let arms = strips(LineStrips3D::descriptor_strips(), arms, points, ends);
+        file.columns(format!("{path}/arm"), &self.times, vec![arms])?;
+        self.times.clear();
+        Ok(())
+    }
+}

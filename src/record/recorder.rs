@@ -1,0 +1,335 @@
+//! A trace on its way into a file: buffered by body, written by whole chunks.
+
+use super::RecordError;
+use super::columns::{Ends, Times, numbers, texts, vectors};
+use super::layout::{self, Setting};
+use super::look;
+use super::mesh;
+use super::page;
+use super::picture::{Picture, pictures};
+use super::rrd::{RrdFile, Store};
+use super::scale::Scales;
+use crate::trace::{
+    Instant, Moment, Motion, Note, NoteKind, Quantity, Sink, SinkError, StreamSet, Subject, Track,
+};
+use rerun::archetypes::{
+    CoordinateFrame, Ellipsoids3D, Mesh3D, Points3D, RecordingInfo, StateChange, TextDocument,
+    TextLog, Transform3D, ViewCoordinates,
+};
+use rerun::components::{Color, FillMode, MediaType, Radius, Scalar, TextLogLevel};
+use rerun::{Component as _, ComponentDescriptor, TimePoint, Timeline};
+use std::path::{Path, PathBuf};
+
+/// Rows a chunk: compression sees 64 KiB at a time, and a few hundred rows fill that.
+const STATE_ROWS: usize = 1024;
+const DERIVED_ROWS: usize = 256;
+
+/// What is to be recorded, besides the trace itself.
+pub struct Heading<'a> {
+    pub title: &'a str,
+    /// Markdown: what the scene shows and what to look for.
+    pub notes: &'a str,
+    /// Tells recordings apart in a viewer; the same for the same scene.
+    pub id: &'a str,
+    /// s.
+    pub duration: f64,
+    /// Of the derived streams, 1/s.
+    pub rate: f64,
+    /// Of those that last, s.
+    pub shortest_event: Option<f64>,
+    pub has_pushes: bool,
+    pub streams: StreamSet,
+}
+
+/// Writes a trace to an `.rrd` file.
+pub struct Recorder {
+    path: PathBuf,
+    file: RrdFile,
+    bodies: Vec<BodyRecorder>,
+}
+
+/// What was written.
+#[derive(Clone, Debug)]
+pub struct Summary {
+    pub path: PathBuf,
+    pub bytes: u64,
+    pub rows: u64,
+}
+
+struct BodyRecorder {
+    subject: Subject,
+    quantities: Vec<&'static Quantity>,
+    pictures: Vec<Box<dyn Picture>>,
+    pages: Option<Vec<String>>,
+    state_times: Times,
+    positions: Vec<f32>,
+    attitudes: Vec<f32>,
+    omegas: Vec<f64>,
+    times: Times,
+    values: Vec<(Vec<f64>, Ends)>,
+}
+
+impl Recorder {
+    /// Creates the file and writes what does not change: blueprint first, then static things.
+    pub fn create(
+        path: &Path,
+        heading: &Heading<'_>,
+        subjects: &[Subject],
+        scales: &Scales,
+    ) -> Result<Self, RecordError> {
+        let mut file = RrdFile::create(path, heading.id)?;
+        let setting = Setting {
+            heading,
+            subjects,
+            scales,
+        };
+        layout::write(&mut file, &setting)?;
+        file.begin_recording()?;
+        let mut bodies = Vec::with_capacity(subjects.len());
+        file.statics("/", &[&ViewCoordinates::RIGHT_HAND_Y_UP()])?;
+        let info = RecordingInfo::new().with_name(heading.title);
+        file.statics("/__properties", &[&info])?;
+        let notes = TextDocument::from_markdown(layout::notes(&setting));
+        file.statics("/notes", &[&notes])?;
+        for (k, subject) in subjects.iter().enumerate() {
+            let body = BodyRecorder::new(subject, heading.streams, scales);
+            body.statics(&mut file, k, heading.streams, scales)?;
+            bodies.push(body);
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            bodies,
+        })
+    }
+
+    /// Writes what is buffered and closes the file.
+    pub fn finish(mut self) -> Result<Summary, RecordError> {
+        for body in &mut self.bodies {
+            body.flush_state(&mut self.file)?;
+            body.flush_derived(&mut self.file)?;
+        }
+        let (bytes, rows) = self.file.finish()?;
+        Ok(Summary {
+            path: self.path,
+            bytes,
+            rows,
+        })
+    }
+}
+
+impl Sink for Recorder {
+    fn motions(&mut self, track: &Track<'_>) -> Result<(), SinkError> {
+        let width = track.bodies.len();
+        for (k, &at) in track.instants.iter().enumerate() {
+            let motions = &track.motions[k * width..(k + 1) * width];
+            for (body, motion) in self.bodies[track.bodies.clone()].iter_mut().zip(motions) {
+                body.motion(at, motion);
+                if body.state_times.len() >= STATE_ROWS {
+                    body.flush_state(&mut self.file)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn moments(&mut self, at: Instant, moments: &[Moment]) -> Result<(), SinkError> {
+        for (body, moment) in self.bodies.iter_mut().zip(moments) {
+            body.moment(at, moment);
+            if body.times.len() >= DERIVED_ROWS {
+                body.flush_derived(&mut self.file)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn note(&mut self, at: Instant, note: &Note) -> Result<(), SinkError> {
+        let (level, colour) = match note.kind {
+            NoteKind::Failure => (TextLogLevel::ERROR, look::FORCE),
+            _ => (
+                TextLogLevel::INFO,
+                look::BODIES[note.body % look::BODIES.len()],
+            ),
+        };
+        let line = TextLog::new(note.text.as_str())
+            .with_level(level)
+            .with_color(Color::from(colour));
+        let when = timepoint(at);
+        let subject = &self.bodies[note.body].subject;
+        let lane = format!("/events/{}", subject.name);
+        let state = match note.kind {
+            NoteKind::Begins => StateChange::single("acts"),
+            NoteKind::Instant => StateChange::single("struck"),
+            NoteKind::Failure => StateChange::single("not finite"),
+            NoteKind::Ends => StateChange::new().with_state([""]),
+        };
+        self.file
+            .row(Store::Recording, "/events", when.clone(), &[&line])?;
+        self.file.row(Store::Recording, lane, when, &[&state])?;
+        Ok(())
+    }
+}
+
+fn timepoint(at: Instant) -> TimePoint {
+    TimePoint::default()
+        .with(Timeline::new_duration("sim_time"), at.nanoseconds())
+        .with(Timeline::new_sequence("step"), at.step as i64)
+}
+
+impl BodyRecorder {
+    fn new(subject: &Subject, streams: StreamSet, scales: &Scales) -> Self {
+        let quantities = streams.quantities();
+        Self {
+            subject: subject.clone(),
+            values: quantities.iter().map(|_| Default::default()).collect(),
+            quantities,
+            pictures: pictures(streams, scales),
+            pages: streams.contains("numbers").then(Vec::new),
+            state_times: Times::default(),
+            positions: Vec::new(),
+            attitudes: Vec::new(),
+            omegas: Vec::new(),
+            times: Times::default(),
+        }
+    }
+
+    fn statics(
+        &self,
+        file: &mut RrdFile,
+        index: usize,
+        streams: StreamSet,
+        scales: &Scales,
+    ) -> Result<(), RecordError> {
+        let subject = &self.subject;
+        let name = &subject.name;
+        let shape: Mesh3D = mesh::mesh(subject, look::BODIES[index % look::BODIES.len()]);
+        file.statics(format!("/bodies/{name}/spin/shape"), &[&shape])?;
+        let above = [0.0, (1.2 * scales.size) as f32, 0.0];
+        let label = Points3D::new([above])
+            .with_radii([Radius::new_ui_points(0.0)])
+            .with_labels([subject.label.as_str()])
+            .with_colors([look::NAME])
+            .with_show_labels(true);
+        let at_body = CoordinateFrame::new(format!("tf#/bodies/{name}"));
+        file.statics(format!("/labels/{name}"), &[&at_body, &label])?;
+        if let Some(pivot_w) = subject.pivot_w {
+            let at = Transform3D::from_translation(<[f32; 3]>::from(pivot_w.map(|x| x as f32)));
+            let dot = Points3D::new([[0.0_f32; 3]])
+                .with_radii([Radius::new_ui_points(5.0)])
+                .with_colors([look::PIVOT]);
+            file.statics(format!("/pivots/{name}"), &[&at, &dot])?;
+        }
+        if streams.contains("inertia") {
+            self.ellipsoid(file)?;
+        }
+        for picture in &self.pictures {
+            picture.statics(file, subject)?;
+        }
+        if self.pages.is_some() {
+            let markdown = TextDocument::update_fields().with_media_type(MediaType::markdown());
+            file.statics(format!("/pages/{name}"), &[&markdown])?;
+        }
+        Ok(())
+    }
+
+    /// The equivalent ellipsoid: translucent, turning with the body.
+    fn ellipsoid(&self, file: &mut RrdFile) -> Result<(), RecordError> {
+        let Some((half, q)) = mesh::equivalent_ellipsoid(&self.subject) else {
+            return Ok(());
+        };
+        let name = &self.subject.name;
+        let at_body = CoordinateFrame::new(format!("tf#/bodies/{name}/spin"));
+        let [x, y, z, w] = q.coords.map(|x| x as f32).into();
+        let ellipsoid = Ellipsoids3D::from_half_sizes([<[f32; 3]>::from(half.map(|x| x as f32))])
+            .with_quaternions([rerun::Quaternion::from_xyzw([x, y, z, w])])
+            .with_colors([look::with_alpha(look::INERTIA, 0x40)])
+            .with_fill_mode(FillMode::Solid);
+        file.statics(format!("/inertia/{name}"), &[&at_body, &ellipsoid])
+    }
+
+    fn motion(&mut self, at: Instant, motion: &Motion) {
+        self.state_times.push(at);
+        self.positions
+            .extend(motion.position_w.iter().map(|&x| x as f32));
+        self.attitudes
+            .extend(motion.q_wb.coords.iter().map(|&x| x as f32));
+        self.omegas.extend(motion.omega_w.iter());
+    }
+
+    fn moment(&mut self, at: Instant, moment: &Moment) {
+        self.times.push(at);
+        for (quantity, (values, ends)) in self.quantities.iter().zip(&mut self.values) {
+            let before = values.len();
+            (quantity.write)(&self.subject, moment, values);
+            ends.push(values.len() - before);
+        }
+        for picture in &mut self.pictures {
+            picture.row(at, &self.subject, moment);
+        }
+        if let Some(pages) = &mut self.pages {
+            pages.push(page::page(&self.subject, moment, &self.quantities));
+        }
+    }
+
+    /// The state: f32 pose for the picture, f64 angular velocity.
+    fn flush_state(&mut self, file: &mut RrdFile) -> Result<(), RecordError> {
+        let name = &self.subject.name;
+        let rows = self.state_times.len();
+        let one = Ends::uniform(rows, 1);
+        let positions = std::mem::take(&mut self.positions);
+        let attitudes = std::mem::take(&mut self.attitudes);
+        let omegas = std::mem::take(&mut self.omegas);
+        let translation = vectors(
+            Transform3D::descriptor_translation(),
+            positions,
+            3,
+            one.clone(),
+        );
+        let quaternion = vectors(Transform3D::descriptor_quaternion(), attitudes, 4, one);
+        let omega = numbers(
+            number_descriptor("angular_velocity"),
+            omegas,
+            Ends::uniform(rows, 3),
+        );
+        file.columns(
+            format!("/bodies/{name}"),
+            &self.state_times,
+            vec![translation],
+        )?;
+        file.columns(
+            format!("/bodies/{name}/spin"),
+            &self.state_times,
+            vec![quaternion, omega],
+        )?;
+        self.state_times.clear();
+        Ok(())
+    }
+
+    fn flush_derived(&mut self, file: &mut RrdFile) -> Result<(), RecordError> {
+        let name = &self.subject.name;
+        let mut columns = Vec::with_capacity(self.quantities.len());
+        for (quantity, slot) in self.quantities.iter().zip(&mut self.values) {
+            let (values, ends) = std::mem::take(slot);
+            columns.push(numbers(number_descriptor(quantity.name), values, ends));
+        }
+        if !columns.is_empty() {
+            file.columns(format!("/numbers/{name}"), &self.times, columns)?;
+        }
+        for picture in &mut self.pictures {
+            picture.flush(file, &self.subject)?;
+        }
+        if let Some(pages) = &mut self.pages {
+            let pages = std::mem::take(pages);
+            let ends = Ends::uniform(pages.len(), 1);
+            let text = texts(TextDocument::descriptor_text(), pages, ends);
+            file.columns(format!("/pages/{name}"), &self.times, vec![text])?;
+        }
+        self.times.clear();
+        Ok(())
+    }
+}
+
+/// A column of f64 that plots can take for their scalars.
+fn number_descriptor(name: &'static str) -> ComponentDescriptor {
+    ComponentDescriptor::partial(name).with_component_type(Scalar::name())
+}

@@ -1,0 +1,123 @@
+//! Level 4: scenes, from a TOML file to something valid and complete.
+//!
+//! A [`Scene`] comes only from [`Scene::parse`] and is right in every respect: nothing downstream
+//! checks again. Units are SI and radians; degrees exist only in the file.
+
+mod body;
+mod event;
+mod problem;
+mod read;
+mod table;
+
+pub use body::Body;
+pub use event::{Action, Event, Framed};
+pub use problem::Problems;
+
+use crate::effect::Called;
+use crate::integrator::Method;
+use crate::trace::StreamSet;
+use std::path::Path;
+
+/// A scripted run.
+#[derive(Clone)]
+#[non_exhaustive]
+pub struct Scene {
+    /// The file's name without its ending; recordings are called after it.
+    pub name: String,
+    pub title: String,
+    /// The comment that opens the file, as Markdown: what to look at.
+    pub notes: String,
+    /// Of the file's text: the same for the same scene.
+    pub fingerprint: u64,
+    /// s.
+    pub duration: f64,
+    pub method: &'static dyn Method,
+    /// s.
+    pub step: f64,
+    pub record: Record,
+    /// The effects that are called for; those switched off are not here.
+    pub effects: Vec<(&'static str, Called)>,
+    pub bodies: Vec<Body>,
+    pub events: Vec<Event>,
+}
+
+/// What is recorded, and how often.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Record {
+    /// Derived streams: samples per simulated second. Events always.
+    pub rate: f64,
+    pub state: StateRate,
+    pub streams: StreamSet,
+}
+
+/// How often the state (pose and angular velocity) is recorded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StateRate {
+    EveryStep,
+    /// Samples per simulated second.
+    PerSecond(f64),
+}
+
+/// Why there is no scene.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    #[error("{file}: cannot be read: {why}; {remedy}")]
+    Unreadable {
+        file: String,
+        why: String,
+        remedy: String,
+    },
+    #[error(transparent)]
+    Wrong(#[from] Problems),
+}
+
+impl Scene {
+    /// Reads and checks a scene file.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let file = path.display().to_string();
+        let source = std::fs::read_to_string(path).map_err(|error| SceneError::Unreadable {
+            why: error.to_string(),
+            remedy: remedy_for(path, &error),
+            file: file.clone(),
+        })?;
+        let name = path.file_stem().map_or_else(
+            || "scene".to_owned(),
+            |stem| stem.to_string_lossy().into_owned(),
+        );
+        Ok(Self::parse(&file, &name, &source)?)
+    }
+
+    /// Checks the text of a scene; `file` is how messages call it.
+    pub fn parse(file: &str, name: &str, source: &str) -> Result<Self, Problems> {
+        read::scene(file, name, source)
+    }
+}
+
+fn remedy_for(path: &Path, error: &std::io::Error) -> String {
+    if error.kind() == std::io::ErrorKind::InvalidData {
+        return "a scene is a text in UTF-8".to_owned();
+    }
+    if path.is_dir() {
+        return "name a scene file, not a folder".to_owned();
+    }
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let scenes: Vec<String> = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .filter(|name| name.ends_with(".toml") && name != "Cargo.toml")
+        .collect();
+    let wanted = path.file_name().unwrap_or_default().to_string_lossy();
+    match scenes.iter().map(String::as_str).collect::<Vec<_>>() {
+        names if names.is_empty() => "`torquescope scenes` lists the scenes there are".to_owned(),
+        mut names => {
+            names.sort_unstable();
+            table::nearest(&wanted, &names)
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! The file as a whole: its keys, its opening comment, its cross references.
+
+use super::problem::Problems;
+use super::table::{Node, Table, nearest};
+use super::{Record, Scene, StateRate, body, event};
+use crate::effect::{Argument, Called, EFFECTS, EffectKind, Value};
+use crate::integrator::{self, DEFAULT_METHOD, METHODS, Method};
+use crate::trace::{STREAMS, StreamSet};
+use toml::de::DeTable;
+
+/// Seconds. A thousandth is what game engines and controllers use.
+const DEFAULT_STEP: f64 = 1e-3;
+/// Samples a second of the derived streams: what a screen shows.
+const DEFAULT_RATE: f64 = 60.0;
+/// Times are recorded as whole nanoseconds in 63 bits, which is 292 years.
+const LONGEST: f64 = 9.2e9;
+/// More steps than this cannot be counted exactly in an f64 (2⁵³), nor waited for.
+const MOST_STEPS: f64 = 9e15;
+
+pub(super) fn scene(file: &str, name: &str, source: &str) -> Result<Scene, Problems> {
+    let mut problems = Problems::new(file, source);
+    let (document, errors) = DeTable::parse_recoverable(source);
+    for error in &errors {
+        let span = error.span().unwrap_or(0..0);
+        problems.add(&span, format!("not TOML: {}", error.message()));
+    }
+    if !errors.is_empty() {
+        return Err(problems);
+    }
+    let top = Table::new(document.get_ref(), 0..0, "the scene");
+    let scene = read(&top, name, source, &mut problems);
+    top.check_keys(&mut problems);
+    match scene {
+        Some(scene) if problems.is_empty() => Ok(scene),
+        _ => Err(problems),
+    }
+}
+
+fn read(top: &Table<'_>, name: &str, source: &str, problems: &mut Problems) -> Option<Scene> {
+    let title = top
+        .get("title")
+        .and_then(|node| node.str(problems))
+        .unwrap_or(name);
+    let duration = duration(top, problems);
+    let (method, step) = stepping(top, duration, problems);
+    let record = record(top, problems);
+    let effects = effects(top, step.unwrap_or(DEFAULT_STEP), problems);
+    let bodies = body::read_all(&top.tables("body", problems), problems);
+    if bodies.declared == 0 {
+        problems.add(top.span(), "the scene has no body; add a [[body]]");
+    }
+    let events = top.tables("event", problems);
+    let events = event::read_all(&events, &bodies, duration, problems);
+    Some(Scene {
+        name: name.to_owned(),
+        title: title.to_owned(),
+        notes: opening_comment(source),
+        fingerprint: fingerprint(source),
+        duration: duration?,
+        method: method?,
+        step: step?,
+        record: record?,
+        effects,
+        bodies: bodies.into_valid()?,
+        events,
+    })
+}
+
+fn duration(top: &Table<'_>, problems: &mut Problems) -> Option<f64> {
+    let node = top.require(
+        "duration",
+        "its length in seconds, such as duration = 2.0",
+        problems,
+    )?;
+    let duration = node.positive("s", problems)?;
+    if duration > LONGEST {
+        node.problem(
+            format!("is longer than a recording's clock counts ({LONGEST:e} s)"),
+            problems,
+        );
+        return None;
+    }
+    Some(duration)
+}
+
+fn stepping(
+    top: &Table<'_>,
+    duration: Option<f64>,
+    problems: &mut Problems,
+) -> (Option<&'static dyn Method>, Option<f64>) {
+    let default = integrator::find(DEFAULT_METHOD);
+    let Some(table) = top.table("stepping", problems) else {
+        return (default, Some(DEFAULT_STEP));
+    };
+    let method = match table.get("method") {
+        None => default,
+        Some(node) => node.str(problems).and_then(|name| {
+            let found = integrator::find(name);
+            if found.is_none() {
+                let names: Vec<&str> = METHODS.iter().map(|m| m.info().name).collect();
+                let remedy = nearest(name, &names);
+                node.problem(format!("is no method; {remedy}"), problems);
+            }
+            found
+        }),
+    };
+    let step = match table.get("step") {
+        None => Some(DEFAULT_STEP),
+        Some(node) => node.positive("s", problems).filter(|step| {
+            let steps = duration.unwrap_or(0.0) / step;
+            if steps > MOST_STEPS {
+                node.problem(
+                    format!("makes {steps:.1e} steps of this scene; at most {MOST_STEPS:e} can be counted"),
+                    problems,
+                );
+            }
+            steps <= MOST_STEPS
+        }),
+    };
+    table.check_keys(problems);
+    (method, step)
+}
+
+fn record(top: &Table<'_>, problems: &mut Problems) -> Option<Record> {
+    let Some(table) = top.table("record", problems) else {
+        return Some(Record {
+            rate: DEFAULT_RATE,
+            state: StateRate::EveryStep,
+            streams: StreamSet::default_set(),
+        });
+    };
+    let rate = match table.get("rate") {
+        None => Some(DEFAULT_RATE),
+        Some(node) => node.positive(PER_SECOND, problems),
+    };
+    let state = match table.get("state") {
+        None => Some(StateRate::EveryStep),
+        Some(node) => state_rate(&node, problems),
+    };
+    let streams = match table.get("streams") {
+        None => Some(StreamSet::default_set()),
+        Some(node) => streams(&node, problems),
+    };
+    table.check_keys(problems);
+    Some(Record {
+        rate: rate?,
+        state: state?,
+        streams: streams?,
+    })
+}
+
+const PER_SECOND: &str = "samples per simulated second";
+
+fn state_rate(node: &Node<'_>, problems: &mut Problems) -> Option<StateRate> {
+    if node.is_number() {
+        return Some(StateRate::PerSecond(node.positive(PER_SECOND, problems)?));
+    }
+    if node.str(problems)? != "every" {
+        node.problem(
+            format!("is neither \"every\" nor a number of {PER_SECOND}"),
+            problems,
+        );
+        return None;
+    }
+    Some(StateRate::EveryStep)
+}
+
+fn streams(node: &Node<'_>, problems: &mut Problems) -> Option<StreamSet> {
+    let mut chosen = StreamSet::none();
+    for name in node.texts(problems)? {
+        let text = name.str(problems)?;
+        match StreamSet::of(text) {
+            Some(one) => chosen = chosen.with(one),
+            None => {
+                let names: Vec<&str> = STREAMS.iter().map(|s| s.name).collect();
+                let message = format!("\"{text}\" is no stream; {}", nearest(text, &names));
+                problems.add(&name.span, message);
+            }
+        }
+    }
+    Some(chosen)
+}
+
+fn effects(top: &Table<'_>, step: f64, problems: &mut Problems) -> Vec<(&'static str, Called)> {
+    let mut called = Vec::new();
+    let Some(table) = top.table("effects", problems) else {
+        return called;
+    };
+    for kind in EFFECTS {
+        match effect(kind, &table, step, problems) {
+            None | Some(Called::Off) => {}
+            Some(effect) => called.push((kind.name, effect)),
+        }
+    }
+    table.check_keys(problems);
+    called
+}
+
+fn effect(
+    kind: &EffectKind,
+    table: &Table<'_>,
+    step: f64,
+    problems: &mut Problems,
+) -> Option<Called> {
+    let node = table.get(kind.name)?;
+    let span = node.span.clone();
+    let text = node.text(problems);
+    let value = match kind.argument {
+        Argument::Switch => Value::Switch(node.boolean(problems)?),
+        Argument::Vector(unit) => Value::Vector(node.vector(unit, problems)?),
+        Argument::Table(keys) => {
+            let table = node.table(format!("{} = {{…}}", kind.name), problems)?;
+            let values = keys
+                .iter()
+                .map(|&(key, unit)| table.get(key).and_then(|node| node.number(unit, problems)))
+                .collect();
+            table.check_keys(problems);
+            Value::Table(values)
+        }
+    };
+    (kind.make)(&value, step)
+        .map_err(|why| problems.add(&span, format!("{text}: {why}")))
+        .ok()
+}
+
+/// The comment lines that open a file, without their marks.
+fn opening_comment(source: &str) -> String {
+    let lines = source
+        .lines()
+        .map_while(|line| line.trim_start().strip_prefix('#'));
+    let lines: Vec<&str> = lines
+        .map(|line| line.strip_prefix(' ').unwrap_or(line))
+        .collect();
+    lines.join("\n").trim().to_owned()
+}
+
+/// FNV-1a over the bytes (Fowler, Noll & Vo): short, and the same everywhere.
+fn fingerprint(source: &str) -> u64 {
+    source.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}

@@ -1,0 +1,312 @@
+//! A TOML table read key by key: types checked, unknown keys named, every problem kept.
+//!
+//! Deserialising by derive would stop at the first problem; a scene reports all of them.
+
+use super::problem::Problems;
+use nalgebra::Vector3;
+use std::cell::RefCell;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A table, and which of its keys have been asked for.
+pub(super) struct Table<'d> {
+    entries: &'d DeTable<'d>,
+    span: Range<usize>,
+    /// As the messages name it, such as `[effects]`.
+    name: String,
+    known: RefCell<Vec<&'static str>>,
+}
+
+/// The value of a key.
+pub(super) struct Node<'d> {
+    pub key: &'static str,
+    pub span: Range<usize>,
+    value: &'d DeValue<'d>,
+}
+
+impl<'d> Table<'d> {
+    pub fn new(entries: &'d DeTable<'d>, span: Range<usize>, name: impl Into<String>) -> Self {
+        Self {
+            entries,
+            span,
+            name: name.into(),
+            known: RefCell::default(),
+        }
+    }
+
+    pub fn span(&self) -> &Range<usize> {
+        &self.span
+    }
+
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The value of a key, which from now on is known; `None` where it is absent.
+    pub fn get(&self, key: &'static str) -> Option<Node<'d>> {
+        let mut known = self.known.borrow_mut();
+        if !known.contains(&key) {
+            known.push(key);
+        }
+        drop(known);
+        let value: &'d Spanned<DeValue<'d>> = self.entries.get(key)?;
+        Some(Node {
+            key,
+            span: value.span(),
+            value: value.get_ref(),
+        })
+    }
+
+    /// The value of a key that must be there.
+    pub fn require(
+        &self,
+        key: &'static str,
+        what: &str,
+        problems: &mut Problems,
+    ) -> Option<Node<'d>> {
+        let node = self.get(key);
+        if node.is_none() {
+            let message = format!("{} lacks `{key}`; add {what}", self.name);
+            problems.add(&self.span, message);
+        }
+        node
+    }
+
+    /// The table under a key.
+    pub fn table(&self, key: &'static str, problems: &mut Problems) -> Option<Table<'d>> {
+        self.get(key)?.table(format!("[{key}]"), problems)
+    }
+
+    /// The tables of an array of tables, such as `[[body]]`.
+    pub fn tables(&self, key: &'static str, problems: &mut Problems) -> Vec<Table<'d>> {
+        let Some(node) = self.get(key) else {
+            return Vec::new();
+        };
+        let Some(items) = node.value.as_array() else {
+            node.wrong(&format!("a list of tables, each under [[{key}]]"), problems);
+            return Vec::new();
+        };
+        let mut tables = Vec::new();
+        for item in items.iter() {
+            let item = Node {
+                key,
+                span: item.span(),
+                value: item.get_ref(),
+            };
+            tables.extend(item.table(format!("[[{key}]]"), problems));
+        }
+        tables
+    }
+
+    /// Names every key that nobody asked for, with the nearest one that is known. Call it last.
+    pub fn check_keys(&self, problems: &mut Problems) {
+        let known = self.known.borrow();
+        for (key, _) in self.entries.iter() {
+            let name = key.get_ref().as_ref();
+            if !known.contains(&name) {
+                let remedy = nearest(name, &known);
+                let message = format!("unknown key `{name}` in {}; {remedy}", self.name);
+                problems.add(&key.span(), message);
+            }
+        }
+    }
+}
+
+/// "did you mean `x`?", or the list of what there is.
+pub(super) fn nearest(name: &str, known: &[&str]) -> String {
+    // A slip of the hand: up to a third of the letters, by edits or swaps.
+    let close = |candidate: &&&str| {
+        3 * strsim::damerau_levenshtein(name, candidate) <= name.chars().count().max(3)
+    };
+    let best = known
+        .iter()
+        .filter(close)
+        .min_by_key(|candidate| strsim::damerau_levenshtein(name, candidate));
+    match best {
+        Some(best) => format!("did you mean `{best}`?"),
+        None => format!("known here: {}", known.join(", ")),
+    }
+}
+
+impl<'d> Node<'d> {
+    /// `key = value` as the file has it.
+    pub fn text(&self, problems: &Problems) -> String {
+        format!("{} = {}", self.key, problems.text(&self.span))
+    }
+
+    /// A message about this value, which it opens: `key = value MESSAGE`.
+    pub fn problem(&self, message: impl AsRef<str>, problems: &mut Problems) {
+        let message = format!("{} {}", self.text(problems), message.as_ref());
+        problems.add(&self.span, message);
+    }
+
+    fn wrong(&self, wanted: &str, problems: &mut Problems) {
+        let message = format!("is {}, not {wanted}", with_article(self.value.type_str()));
+        self.problem(message, problems);
+    }
+
+    pub fn is_text(&self) -> bool {
+        self.value.is_str()
+    }
+
+    pub fn is_number(&self) -> bool {
+        self.value.is_float() || self.value.is_integer()
+    }
+
+    pub fn is_table(&self) -> bool {
+        self.value.is_table()
+    }
+
+    pub fn array_length(&self) -> Option<usize> {
+        Some(self.value.as_array()?.len())
+    }
+
+    pub fn is_array_of_arrays(&self) -> bool {
+        let array = self.value.as_array();
+        array.is_some_and(|a| !a.is_empty() && a.iter().all(|x| x.get_ref().is_array()))
+    }
+
+    pub fn str(&self, problems: &mut Problems) -> Option<&'d str> {
+        let text = self.value.as_str();
+        if text.is_none() {
+            self.wrong("a text in quotes", problems);
+        }
+        text
+    }
+
+    pub fn boolean(&self, problems: &mut Problems) -> Option<bool> {
+        let value = self.value.as_bool();
+        if value.is_none() {
+            self.wrong("true or false", problems);
+        }
+        value
+    }
+
+    /// A finite number in the unit named.
+    pub fn number(&self, unit: &str, problems: &mut Problems) -> Option<f64> {
+        let Some(number) = as_number(self.value) else {
+            self.wrong(&format!("a number ({unit})"), problems);
+            return None;
+        };
+        if !number.is_finite() {
+            self.problem(format!("is not finite; write a number ({unit})"), problems);
+            return None;
+        }
+        Some(number)
+    }
+
+    /// A finite number above zero.
+    pub fn positive(&self, unit: &str, problems: &mut Problems) -> Option<f64> {
+        let number = self.number(unit, problems)?;
+        if number <= 0.0 {
+            self.problem(format!("must be above zero ({unit})"), problems);
+            return None;
+        }
+        Some(number)
+    }
+
+    /// `N` finite numbers.
+    pub fn numbers<const N: usize>(&self, unit: &str, problems: &mut Problems) -> Option<[f64; N]> {
+        let Some(array) = self.value.as_array().filter(|a| a.len() == N) else {
+            self.wrong(&format!("a list of {N} numbers ({unit})"), problems);
+            return None;
+        };
+        let mut numbers = [0.0; N];
+        for (slot, item) in numbers.iter_mut().zip(array.iter()) {
+            let item = Node {
+                key: self.key,
+                span: item.span(),
+                value: item.get_ref(),
+            };
+            *slot = item.number(unit, problems)?;
+        }
+        Some(numbers)
+    }
+
+    pub fn vector(&self, unit: &str, problems: &mut Problems) -> Option<Vector3<f64>> {
+        self.numbers::<3>(unit, problems).map(Vector3::from)
+    }
+
+    /// A 3×3 matrix as three rows.
+    pub fn matrix(&self, unit: &str, problems: &mut Problems) -> Option<nalgebra::Matrix3<f64>> {
+        let Some(array) = self.value.as_array().filter(|a| a.len() == 3) else {
+            self.wrong(&format!("three rows of three numbers ({unit})"), problems);
+            return None;
+        };
+        let mut rows = Vec::with_capacity(3);
+        for item in array.iter() {
+            let row = Node {
+                key: self.key,
+                span: item.span(),
+                value: item.get_ref(),
+            };
+            rows.push(nalgebra::RowVector3::from(
+                row.numbers::<3>(unit, problems)?,
+            ));
+        }
+        Some(nalgebra::Matrix3::from_rows(&rows))
+    }
+
+    /// Texts in quotes, each with its place.
+    pub fn texts(&self, problems: &mut Problems) -> Option<Vec<Node<'d>>> {
+        let array = self.value.as_array();
+        let texts = array.filter(|a| a.iter().all(|x| x.get_ref().is_str()));
+        let Some(texts) = texts else {
+            self.wrong("a list of texts in quotes", problems);
+            return None;
+        };
+        let node = |item: &'d Spanned<DeValue<'d>>| Node {
+            key: self.key,
+            span: item.span(),
+            value: item.get_ref(),
+        };
+        Some(texts.iter().map(node).collect())
+    }
+
+    pub fn table(self, name: String, problems: &mut Problems) -> Option<Table<'d>> {
+        let Some(entries) = self.value.as_table() else {
+            self.wrong("a table", problems);
+            return None;
+        };
+        Some(Table::new(entries, self.span, name))
+    }
+
+    /// The only entry of a one-key table such as `{ body = […] }`, under this node's own key.
+    pub fn only_entry(&self) -> Option<(&'d str, Node<'d>)> {
+        let (name, _, value) = self.choice()?;
+        let node = Node {
+            key: self.key,
+            span: value.span(),
+            value: value.get_ref(),
+        };
+        Some((name, node))
+    }
+
+    /// The only key of a one-key table such as `{ cone = {…} }`, and what it holds.
+    pub fn choice(&self) -> Option<(&'d str, Range<usize>, &'d Spanned<DeValue<'d>>)> {
+        let table = self.value.as_table().filter(|t| t.len() == 1)?;
+        let (key, value) = table.iter().next()?;
+        Some((key.get_ref().as_ref(), key.span(), value))
+    }
+}
+
+fn as_number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        DeValue::Integer(integer) => {
+            let whole = i128::from_str_radix(integer.as_str(), integer.radix()).ok()?;
+            Some(whole as f64)
+        }
+        _ => None,
+    }
+}
+
+fn with_article(noun: &str) -> String {
+    let article = if noun.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {noun}")
+}

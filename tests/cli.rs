@@ -1,0 +1,268 @@
+//! The command line, as a user meets it.
+#![cfg(feature = "cli")]
+
+use assert_cmd::Command;
+use std::path::{Path, PathBuf};
+
+fn torquescope(folder: &Path) -> Command {
+    let mut command = Command::cargo_bin("torquescope").unwrap();
+    command.current_dir(folder);
+    command
+}
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// Every scene in tests/fixtures/wrong against the messages beside it.
+/// `UPDATE_GOLDEN=1 cargo test --test cli` writes them anew.
+#[test]
+fn wrong_scenes_are_told_what_is_wrong_all_at_once() {
+    let folder = root().join("tests/fixtures/wrong");
+    let mut names: Vec<String> = std::fs::read_dir(&folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name.ends_with(".toml"))
+        .collect();
+    names.sort();
+    assert!(names.len() >= 11, "{names:?}");
+    for name in names {
+        let elsewhere = tempfile::tempdir().unwrap();
+        let recording = elsewhere.path().join("left.rrd");
+        let output = torquescope(&folder)
+            .args(["run", &name, "--out"])
+            .arg(&recording)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        assert!(!recording.exists(), "{name} left a recording");
+        assert_eq!(text(&output.stdout), "", "{name}");
+        let golden = folder.join(name.replace(".toml", ".txt"));
+        let said = text(&output.stderr);
+        for line in said.lines() {
+            assert!(line.starts_with(&format!("{name}:")), "{name}: {line}");
+        }
+        if std::env::var_os("UPDATE_GOLDEN").is_some() {
+            std::fs::write(&golden, &said).unwrap();
+        }
+        let wanted = std::fs::read_to_string(&golden).unwrap_or_default();
+        assert_eq!(said, wanted, "{name}");
+    }
+}
+
+#[test]
+fn a_scene_that_does_not_exist() {
+    let output = torquescope(&root())
+        .args(["run", "scenes/cones.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        text(&output.stderr),
+        "scenes/cones.toml: cannot be read: No such file or directory (os error 2); did you mean `cone.toml`?\n"
+    );
+    let output = torquescope(&root())
+        .args(["run", "scenes"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("name a scene file, not a folder"));
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_told_before_the_simulation() {
+    let folder = tempfile::tempdir().unwrap();
+    // 1e12 steps: it would not return if it began.
+    let scene = "duration = 1e9\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 1, 1]\n";
+    std::fs::write(folder.path().join("long.toml"), scene).unwrap();
+    let output = torquescope(folder.path())
+        .args(["run", "long.toml", "--out", "nowhere/at/all.rrd"])
+        .timeout(std::time::Duration::from_secs(20))
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(
+        text(&output.stderr),
+        "nowhere/at/all.rrd: cannot be written: No such file or directory (os error 2); choose another place with --out, or make room and write access there\n"
+    );
+}
+
+#[test]
+fn the_cone_by_its_first_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = root().join("scenes/cone.toml");
+    let output = torquescope(folder.path())
+        .arg("run")
+        .arg(&scene)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert_eq!(text(&output.stderr), "");
+    let said = text(&output.stdout);
+    for number in [
+        "(0, 0, 40)",
+        "(0, 0, 13.3333)",
+        "(-9.42809, -23.5702, -9.42809)",
+        "(5.33333, 0, 0)",
+    ] {
+        assert!(said.contains(number), "{number} is not in\n{said}");
+    }
+    assert!(said.contains("cone.rrd: ") && said.contains("torquescope view cone.rrd"));
+    let recording = std::fs::read(folder.path().join("cone.rrd")).unwrap();
+    assert_eq!(&recording[..4], b"RRF2");
+}
+
+#[test]
+fn json_has_every_digit() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = root().join("scenes/cone.toml");
+    let output = torquescope(folder.path())
+        .arg("run")
+        .arg(&scene)
+        .arg("--json")
+        .output()
+        .unwrap();
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["method"], "semi-implicit");
+    assert_eq!(report["steps"], 2000);
+    assert_eq!(report["bodies"][1]["name"], "base-A");
+    let omega = report["bodies"][1]["angular_velocity"][2].as_f64().unwrap();
+    // 100 additions of 40/1000, rounded.
+    assert!((omega - 4.0).abs() < 1e-13);
+    let bytes = std::fs::metadata(folder.path().join("cone.rrd"))
+        .unwrap()
+        .len();
+    assert_eq!(report["recording"]["bytes"], bytes);
+}
+
+#[test]
+fn a_run_that_loses_its_state_closes_its_file_and_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "duration = 10.0\n[stepping]\nmethod = \"semi-implicit\"\nstep = 0.01\n[effects]\ngyroscopic = true\n[[body]]\nname = \"top\"\nmass = 1.0\ninertia = [1, 2, 2.5]\nangular_velocity = [90, 20, -60]\n";
+    std::fs::write(folder.path().join("burst.toml"), scene).unwrap();
+    let output = torquescope(folder.path())
+        .args(["run", "burst.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let said = text(&output.stderr);
+    assert!(
+        said.starts_with("top is no longer finite at t = ") && said.contains("by semi-implicit"),
+        "{said}"
+    );
+    assert_eq!(said.lines().count(), 1, "{said}");
+    let recording = std::fs::read(folder.path().join("burst.rrd")).unwrap();
+    // The marks of the footer that a whole file ends with.
+    assert!(
+        recording[recording.len() - 12..].starts_with(b"RRF2FOOT"),
+        "no footer"
+    );
+}
+
+#[test]
+fn what_is_not_chosen_is_not_in_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "duration = 1.0\n[record]\nstreams = [\"torque\"]\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 1, 1]\n";
+    std::fs::write(folder.path().join("few.toml"), scene).unwrap();
+    torquescope(folder.path())
+        .args(["run", "few.toml"])
+        .assert()
+        .success();
+    let all = scene.replace("streams = [\"torque\"]", "");
+    std::fs::write(folder.path().join("all.toml"), all).unwrap();
+    torquescope(folder.path())
+        .args(["run", "all.toml"])
+        .assert()
+        .success();
+    let holds = |file: &str, path: &str| {
+        let bytes = std::fs::read(folder.path().join(file)).unwrap();
+        bytes
+            .windows(path.len())
+            .any(|window| window == path.as_bytes())
+    };
+    assert!(holds("few.rrd", "/torque/a") && holds("all.rrd", "/torque/a"));
+    for path in [
+        "/alpha/a",
+        "/omega/a",
+        "/momentum/a",
+        "/inertia/a",
+        "/pages/a",
+    ] {
+        assert!(holds("all.rrd", path), "{path}");
+        assert!(!holds("few.rrd", path), "{path}");
+    }
+}
+
+#[test]
+fn the_lists_and_help() {
+    for verb in ["methods", "effects", "streams", "solids"] {
+        let output = torquescope(&root()).arg(verb).output().unwrap();
+        assert_eq!(output.status.code(), Some(0));
+        assert!(text(&output.stdout).lines().count() > 4, "{verb}");
+        let json = torquescope(&root())
+            .args([verb, "--json"])
+            .output()
+            .unwrap();
+        let list: Vec<serde_json::Map<String, serde_json::Value>> =
+            serde_json::from_slice(&json.stdout).unwrap();
+        assert!(!list.is_empty(), "{verb}");
+    }
+    let output = torquescope(&root()).arg("scenes").output().unwrap();
+    assert!(text(&output.stdout).contains("The tutorial's cone"));
+    for verb in ["run", "view", "check", "scenes"] {
+        let output = torquescope(&root())
+            .args([verb, "--help"])
+            .output()
+            .unwrap();
+        assert!(
+            text(&output.stdout).contains("Example: torquescope"),
+            "{verb}"
+        );
+    }
+    assert_eq!(
+        torquescope(&root())
+            .arg("rum")
+            .output()
+            .unwrap()
+            .status
+            .code(),
+        Some(2)
+    );
+}
+
+#[test]
+fn check_says_right_or_wrong() {
+    let output = torquescope(&root())
+        .args(["check", "scenes/cone.toml", "scenes/wheel.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(text(&output.stdout).lines().count(), 2);
+    let wrong = "tests/fixtures/wrong/zero_step.toml";
+    let output = torquescope(&root())
+        .args(["check", wrong, "scenes/cone.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).starts_with(wrong));
+}
+
+#[test]
+fn view_refuses_what_is_no_recording() {
+    let output = torquescope(&root())
+        .args(["view", "Cargo.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).starts_with("Cargo.toml: is no Rerun recording"));
+    let output = torquescope(&root())
+        .args(["view", "gone.rrd"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("cannot be read"));
+}
