@@ -87,7 +87,7 @@ fn an_output_that_cannot_be_written_is_told_before_the_simulation() {
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(
         text(&output.stderr),
-        "nowhere/at/all.rrd: cannot be written: No such file or directory (os error 2); choose another place with --out, or make room and write access there\n"
+        "nowhere/at/all.rrd: cannot be written: No such file or directory (os error 2); choose another file or folder for the recording\n"
     );
 }
 
@@ -114,6 +114,33 @@ fn the_cone_by_its_first_command() {
     assert!(said.contains("cone.rrd: ") && said.contains("torquescope view cone.rrd"));
     let recording = std::fs::read(folder.path().join("cone.rrd")).unwrap();
     assert_eq!(&recording[..4], b"RRF2");
+}
+
+#[test]
+fn a_file_that_is_no_recording_is_not_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "duration = 0.01\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 1, 1]\n";
+    std::fs::write(folder.path().join("s.toml"), scene).unwrap();
+    let output = torquescope(folder.path())
+        .args(["run", "s.toml", "--out", "s.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(
+        text(&output.stderr),
+        "s.toml exists and is no recording; choose another name, so that it is not lost\n"
+    );
+    assert_eq!(
+        std::fs::read_to_string(folder.path().join("s.toml")).unwrap(),
+        scene
+    );
+    // An earlier recording is replaced.
+    for _ in 0..2 {
+        torquescope(folder.path())
+            .args(["run", "s.toml"])
+            .assert()
+            .success();
+    }
 }
 
 #[test]

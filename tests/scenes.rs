@@ -1,15 +1,16 @@
 //! The cone's numbers, from the tutorial's corrected example, and the scenes that ship.
 
 use nalgebra::Vector3;
+use std::ops::Range;
 use std::path::Path;
 use torquescope::scene::Scene;
 use torquescope::sim::{Outcome, Simulation};
-use torquescope::trace::{Instant, Moment, Note, Sink, SinkError, Subject, Track};
+use torquescope::trace::{Instant, Note, Sample, Sink, SinkError, Subject, Track};
 
-/// Keeps the moments of every delivery.
+/// Keeps everything that is delivered: samples by body, instants of the first body's states.
 #[derive(Default)]
 struct Memory {
-    moments: Vec<(Instant, Vec<Moment>)>,
+    samples: Vec<(Instant, usize, Sample)>,
     states: Vec<Instant>,
     notes: Vec<(Instant, Note)>,
 }
@@ -22,8 +23,15 @@ impl Sink for Memory {
         Ok(())
     }
 
-    fn moments(&mut self, at: Instant, moments: &[Moment]) -> Result<(), SinkError> {
-        self.moments.push((at, moments.to_vec()));
+    fn samples(
+        &mut self,
+        at: Instant,
+        bodies: Range<usize>,
+        samples: &[Sample],
+    ) -> Result<(), SinkError> {
+        let rows = bodies.zip(samples);
+        self.samples
+            .extend(rows.map(|(body, sample)| (at, body, sample.clone())));
         Ok(())
     }
 
@@ -44,7 +52,8 @@ fn run(scene: &Scene) -> (Vec<Subject>, Outcome, Memory) {
     let simulation = Simulation::new(scene);
     let subjects = simulation.subjects().to_vec();
     let mut memory = Memory::default();
-    let outcome = simulation.run(&mut memory).unwrap();
+    let (outcome, done) = simulation.run(&mut memory);
+    done.unwrap();
     (subjects, outcome, memory)
 }
 
@@ -81,15 +90,15 @@ fn the_cones_numbers_in_all_three_readings() {
         outcome.blows.iter().zip(&subjects).zip(expected)
     {
         assert_eq!(subject.name, name);
-        near(blow.moment.tau_w, torque, 1e-12);
-        near(blow.moment.alpha_w, alpha, 1e-12);
+        near(blow.sample.tau_w, torque, 1e-12);
+        near(blow.sample.alpha_w, alpha, 1e-12);
     }
     // And the printed digits of the tutorial, to the three or five it gives.
-    near(outcome.blows[1].moment.alpha_w, [0.0, 0.0, 40.0], 1e-12);
-    near(outcome.blows[2].moment.alpha_w, [0.0, 0.0, 13.333], 5e-4);
-    near(outcome.blows[4].moment.alpha_w, [0.0, -23.570, 0.0], 5e-4);
+    near(outcome.blows[1].sample.alpha_w, [0.0, 0.0, 40.0], 1e-12);
+    near(outcome.blows[2].sample.alpha_w, [0.0, 0.0, 13.333], 5e-4);
+    near(outcome.blows[4].sample.alpha_w, [0.0, -23.570, 0.0], 5e-4);
     near(
-        outcome.blows[3].moment.alpha_w,
+        outcome.blows[3].sample.alpha_w,
         [-9.428, -23.570, -9.428],
         5e-4,
     );
@@ -119,9 +128,9 @@ fn after_the_blow_the_fixed_cones_keep_what_it_gave() {
 fn the_base_of_the_free_cone_has_no_acceleration_at_the_blow() {
     let (_, outcome, _) = run(&load("cone.toml"));
     let blow = &outcome.blows[0];
-    let force = blow.moment.pushes[0].force_w;
+    let force = blow.sample.pushes[0].force_w;
     let to_base = Vector3::new(0.0, -0.25, 0.0);
-    let acceleration = force / 1.0 + blow.moment.alpha_w.cross(&to_base);
+    let acceleration = force / 1.0 + blow.sample.alpha_w.cross(&to_base);
     // F/m = -10, α × r = 40 · 0.25 = 10: one rounding.
     assert!(acceleration.norm() < 1e-14, "{acceleration}");
 }
@@ -129,12 +138,11 @@ fn the_base_of_the_free_cone_has_no_acceleration_at_the_blow() {
 #[test]
 fn the_pivots_stay_where_they_are() {
     let (subjects, _, memory) = run(&load("cone.toml"));
-    for (_, moments) in &memory.moments {
-        for (subject, moment) in subjects.iter().zip(moments) {
-            if let Some(pivot) = subject.pivot_w {
-                // The pose is given at the centre of mass, a metre away: roundings of size 4.
-                assert!((moment.reference_w(subject) - pivot).norm() < 4e-15);
-            }
+    for (_, body, sample) in &memory.samples {
+        let subject = &subjects[*body];
+        if let Some(pivot) = subject.pivot_w {
+            // The pose is given at the centre of mass, a metre away: roundings of size 4.
+            assert!((sample.reference_w(subject) - pivot).norm() < 4e-15);
         }
     }
 }
@@ -156,7 +164,7 @@ fn every_shipped_scene_runs_and_says_what_to_look_at() {
             outcome
                 .blows
                 .iter()
-                .all(|blow| blow.moment.alpha_w.norm().is_finite())
+                .all(|blow| blow.sample.alpha_w.norm().is_finite())
         );
         assert!(!memory.notes.is_empty());
         seen += 1;
@@ -178,7 +186,7 @@ fn pushed_off_its_centre_the_pen_slides_as_fast_and_turns_besides() {
 #[test]
 fn the_shell_turns_up_at_three_fifths_of_the_solid_sphere() {
     let (_, outcome, _) = run(&load("spheres.toml"));
-    let alpha = |k: usize| outcome.blows[k].moment.alpha_w.y;
+    let alpha = |k: usize| outcome.blows[k].sample.alpha_w.y;
     // 0.3 / (2/5 · 0.25) = 3 and 0.3 / (2/3 · 0.25) = 1.8.
     assert!((alpha(0) - 3.0).abs() < 1e-15 * 4.0);
     assert!((alpha(1) - 1.8).abs() < 1e-15 * 4.0);
@@ -190,16 +198,16 @@ fn the_wheels_motor_acts_in_its_own_axes_and_damping_takes_the_spin() {
     let (_, outcome, memory) = run(&scene);
     let (sin, cos) = (30.0_f64.to_radians().sin(), 30.0_f64.to_radians().cos());
     near(
-        outcome.blows[0].moment.tau_w,
+        outcome.blows[0].sample.tau_w,
         [-0.5 * sin, 0.5 * cos, 0.0],
         1e-15,
     );
     // I dω/dt = τ - c I ω about the axle: ω = τ/(c I) (1 - e^{-ct}) to t = 2 s, then e^{-c(t-2)}.
     let (c, tau, inertia) = (0.5_f64, 0.5, 0.25);
     let at_end = tau / (c * inertia) * (1.0 - (-c * 2.0).exp()) * (-c * 3.0).exp();
-    let (_, last) = memory.moments.last().unwrap();
+    let (_, _, last) = memory.samples.last().unwrap();
     // Integrating-factor RK4 with h = 1e-3: error below (c h)⁴, plus 5,000 roundings.
-    assert!((last[0].motion.omega_w.norm() - at_end).abs() < 1e-11);
+    assert!((last.motion.omega_w.norm() - at_end).abs() < 1e-11);
 }
 
 #[test]
@@ -228,12 +236,8 @@ fn events_lie_on_their_exact_instants_with_a_row_on_either_side() {
     let scene = Scene::parse("inline", "inline", source).unwrap();
     let (_, outcome, memory) = run(&scene);
     for time in [0.0123, 0.0123 + 0.03101, 0.0777] {
-        let rows: Vec<&Moment> = memory
-            .moments
-            .iter()
-            .filter(|(at, _)| at.time == time)
-            .map(|(_, moments)| &moments[0])
-            .collect();
+        let at_time = memory.samples.iter().filter(|(at, ..)| at.time == time);
+        let rows: Vec<&Sample> = at_time.map(|(_, _, sample)| sample).collect();
         assert_eq!(rows.len(), 2, "at {time}");
         assert_ne!(rows[0], rows[1], "before and after differ at {time}");
     }
@@ -263,8 +267,8 @@ fn time_does_not_drift_and_a_rate_is_kept() {
     let scene = Scene::parse("inline", "inline", source).unwrap();
     let (_, outcome, memory) = run(&scene);
     assert_eq!(outcome.steps, 10_000);
-    assert_eq!(memory.moments.len(), 1 + 350);
-    for (k, (at, _)) in memory.moments.iter().enumerate() {
+    assert_eq!(memory.samples.len(), 1 + 350);
+    for (k, (at, ..)) in memory.samples.iter().enumerate() {
         // The first step at or after k/50 s, both rounded.
         assert!(
             (-1e-15..0.0007 + 1e-15).contains(&(at.time - k as f64 / 50.0)),
@@ -272,13 +276,42 @@ fn time_does_not_drift_and_a_rate_is_kept() {
             at.time
         );
     }
-    assert_eq!(memory.moments.last().unwrap().0.time, 7.0);
-    // 70 samples of the state by its own rate, and the start.
-    let by_rate = memory
-        .states
+    assert_eq!(memory.samples.last().unwrap().0.time, 7.0);
+    // The start and 70 samples of the state, by its own rate.
+    assert_eq!(memory.states.len(), 1 + 70);
+}
+
+#[test]
+fn events_that_a_rounding_parts_are_one_instant() {
+    let source = r#"
+        duration = 0.6
+        [stepping]
+        step = 0.0007
+        [[body]]
+        name = "ball"
+        mass = 1.0
+        inertia = [0.2, 0.2, 0.2]
+        [[event]]
+        at = 0.1
+        for = 0.2
+        body = "ball"
+        torque = [0.0, 1.0, 0.0]
+        [[event]]
+        at = 0.3
+        for = 0.1
+        body = "ball"
+        torque = [0.0, 1.0, 0.0]
+    "#;
+    // 0.1 + 0.2 is not 0.3 in binary; the torque must not vanish between the two.
+    let (_, outcome, memory) = run(&Scene::parse("inline", "inline", source).unwrap());
+    let at_seam = memory
+        .samples
         .iter()
-        .filter(|at| (at.time * 10.0 - (at.time * 10.0).round()).abs() < 0.0071);
-    assert!(by_rate.count() >= 71);
+        .filter(|(at, ..)| (at.time - 0.3).abs() < 1e-9);
+    let torques: Vec<f64> = at_seam.map(|(_, _, sample)| sample.tau_w.y).collect();
+    assert_eq!(torques, [1.0, 1.0]);
+    // 857.1 steps of the grid, and one more at each of the instants 0.1, 0.3 and 0.4.
+    assert_eq!(outcome.steps, 858 + 3);
 }
 
 #[test]
@@ -326,7 +359,8 @@ fn a_state_that_is_lost_is_recorded_and_named() {
     let scene = Scene::parse("inline", "inline", source).unwrap();
     let simulation = Simulation::new(&scene);
     let mut memory = Memory::default();
-    let error = simulation.run(&mut memory).unwrap_err().to_string();
+    let (outcome, done) = simulation.run(&mut memory);
+    let error = done.unwrap_err().to_string();
     assert!(
         error.starts_with("top is no longer finite at t = "),
         "{error}"
@@ -335,10 +369,40 @@ fn a_state_that_is_lost_is_recorded_and_named() {
         error.contains("semi-implicit") && error.contains("smaller step"),
         "{error}"
     );
-    let (_, last) = memory.moments.last().unwrap();
-    assert!(!last[0].motion.omega_w.norm().is_finite());
+    assert!(error.len() < 300, "{error}");
+    let (at, _, last) = memory.samples.last().unwrap();
+    assert!(!last.motion.omega_w.norm().is_finite());
+    assert_eq!(at.step, outcome.steps);
     assert_eq!(
         memory.notes.last().unwrap().1.kind,
         torquescope::trace::NoteKind::Failure
     );
+}
+
+#[test]
+fn when_one_body_is_lost_the_others_are_recorded_where_they_were() {
+    // The ninth body is in another group than the first, which must not run on to the end of the
+    // stretch before the loss is noticed.
+    let mut source = String::from(
+        "duration = 10.0\n[stepping]\nmethod = \"semi-implicit\"\nstep = 0.01\n[record]\nrate = 0.5\n[effects]\ngyroscopic = true\n",
+    );
+    for k in 0..8 {
+        source += &format!(
+            "[[body]]\nname = \"calm-{k}\"\nmass = 1.0\ninertia = [1, 1, 1]\nvelocity = [1, 0, 0]\n"
+        );
+    }
+    source += "[[body]]\nname = \"wild\"\nmass = 1.0\ninertia = [1, 2, 2.5]\nangular_velocity = [300, 20, -100]\n";
+    let scene = Scene::parse("inline", "inline", &source).unwrap();
+    let mut memory = Memory::default();
+    let (outcome, done) = Simulation::new(&scene).run(&mut memory);
+    assert!(done.unwrap_err().to_string().starts_with("wild is"));
+    let (at, ..) = memory.samples.last().unwrap();
+    assert!(at.time < 2.0);
+    let calm = memory
+        .samples
+        .iter()
+        .rfind(|(_, body, _)| *body == 0)
+        .unwrap();
+    assert!((calm.2.motion.position_w.x - at.time).abs() < 1e-12);
+    assert_eq!(memory.states.last().unwrap().step, outcome.steps);
 }

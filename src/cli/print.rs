@@ -20,7 +20,7 @@ pub fn json(value: &impl serde::Serialize) -> anyhow::Result<()> {
     out(&serde_json::to_string_pretty(value)?)
 }
 
-/// A table in plain lines; columns from `right` on are numbers.
+/// A table framed by lines.
 pub fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
     let mut table = Table::new();
     table

@@ -1,10 +1,10 @@
 //! `run SCENE`: simulate, record, say what happened.
 
-use super::{print, view};
-use crate::record::{Heading, Recorder, Scales, Summary};
+use super::{Wrong, print, view};
+use crate::record::{Heading, Recorder, Summary};
 use crate::scene::{Action, Scene};
-use crate::sim::{Blow, Outcome, Simulation};
-use crate::trace::{Moment, Subject, short, short_vector};
+use crate::sim::{Blow, Outcome, SimError, Simulation};
+use crate::trace::{Sample, Subject, short, short_vector};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -28,52 +28,48 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if arguments.serve.is_asked_for() && !arguments.view {
+        return Err(Wrong("--port and --no-browser say how to view; add --view".to_owned()).into());
+    }
     let scene = Scene::load(&arguments.scene)?;
     let path = match &arguments.out {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.rrd", scene.name)),
     };
-    let mut simulation = Simulation::new(&scene);
+    let simulation = Simulation::new(&scene);
     let subjects = simulation.subjects().to_vec();
-    let lasting = || {
-        scene
-            .events
-            .iter()
-            .map(|event| event.action.lasts())
-            .filter(|&s| s > 0.0)
+    let heading = Heading::of(&scene, &simulation);
+    let mut recorder = Recorder::create(&path, &heading, &subjects)?;
+    let (outcome, done) = simulation.run(&mut recorder);
+    // Whatever the run came to, the file is closed whole and what there is of it is told.
+    let summary = match (recorder.finish(), &done) {
+        (Ok(summary), _) => summary,
+        // The file failed first; closing it has nothing to add.
+        (Err(_), Err(SimError::Sink(_))) => return Ok(done?),
+        (Err(error), _) => return Err(error.into()),
     };
-    let longest = lasting().fold(0.0, f64::max);
-    let scales = Scales::new(&subjects, &simulation.expected(), longest);
-    let heading = Heading {
-        title: &scene.title,
-        notes: &scene.notes,
-        id: &format!("{}-{:016x}", scene.name, scene.fingerprint),
-        duration: scene.duration,
-        rate: scene.record.rate,
-        shortest_event: lasting().min_by(f64::total_cmp),
-        has_pushes: scene
-            .events
-            .iter()
-            .any(|e| matches!(e.action, Action::Push { .. })),
-        streams: scene.record.streams,
-    };
-    let mut recorder = Recorder::create(&path, &heading, &subjects, &scales)?;
-    let outcome = simulation.run(&mut recorder);
-    // The file is closed whole whatever the run came to.
-    let summary = recorder.finish()?;
-    let outcome = outcome?;
     if arguments.json {
-        print::json(&Report::new(&scene, &subjects, &outcome, &summary))?;
+        let report = Report::new(&scene, &subjects, &outcome, &summary, done.as_ref().err());
+        print::json(&report)?;
     } else {
-        print::out(&tables(&scene, &subjects, &outcome, &summary))?;
+        print::out(&tables(&scene, &subjects, &outcome, &summary, done.is_ok()))?;
     }
     if arguments.view {
-        view::serve(&path, &arguments.serve)?;
+        if let Err(error) = &done {
+            eprintln!("{error}");
+        }
+        view::serve(&path, &arguments.serve, arguments.json)?;
     }
-    Ok(())
+    Ok(done?)
 }
 
-fn tables(scene: &Scene, subjects: &[Subject], outcome: &Outcome, summary: &Summary) -> String {
+fn tables(
+    scene: &Scene,
+    subjects: &[Subject],
+    outcome: &Outcome,
+    summary: &Summary,
+    whole: bool,
+) -> String {
     let mut text = format!(
         "{}\nmethod {}, step {} s, {} steps, {} bodies\n",
         scene.title,
@@ -100,7 +96,10 @@ fn tables(scene: &Scene, subjects: &[Subject], outcome: &Outcome, summary: &Summ
         text += &print::table(&header, rows);
         text += "\n";
     }
-    text += &format!("\nAt the end, t = {} s\n", scene.duration);
+    text += &match whole {
+        true => format!("\nAt the end, t = {} s\n", scene.duration),
+        false => format!("\nWhere it stopped, after {} steps\n", outcome.steps),
+    };
     let header = [
         "body",
         "position (m)",
@@ -129,15 +128,15 @@ fn blow_row(scene: &Scene, subjects: &[Subject], blow: &Blow) -> Vec<String> {
     let subject = &subjects[event.body];
     let (torque, response) = match blow.jump {
         None => (
-            short_vector(blow.moment.tau_w),
-            short_vector(blow.moment.alpha_w),
+            short_vector(blow.sample.tau_w),
+            short_vector(blow.sample.alpha_w),
         ),
-        Some((angular, turn)) => (
-            format!("{} N·m·s", short_vector(angular)),
-            format!("Δω {} rad/s", short_vector(turn)),
+        Some(jump) => (
+            format!("{} N·m·s", short_vector(jump.angular_impulse_w)),
+            format!("Δω {} rad/s", short_vector(jump.omega_w)),
         ),
     };
-    let inverse = blow.moment.inverse_inertia_w(subject);
+    let inverse = blow.sample.inverse_inertia_w(subject);
     let rows: Vec<String> = (0..3)
         .map(|i| inverse.row(i).transpose())
         .map(|row| short_vector(nalgebra::Vector3::new(row[0], row[1], row[2])))
@@ -158,8 +157,8 @@ fn blow_row(scene: &Scene, subjects: &[Subject], blow: &Blow) -> Vec<String> {
     ]
 }
 
-fn end_row(subject: &Subject, moment: &Moment) -> Vec<String> {
-    let motion = &moment.motion;
+fn end_row(subject: &Subject, sample: &Sample) -> Vec<String> {
+    let motion = &sample.motion;
     let q: Vec<String> = motion.q_wb.coords.iter().map(|&x| short(x)).collect();
     vec![
         subject.name.clone(),
@@ -182,6 +181,9 @@ struct Report<'a> {
     blows: Vec<BlowReport<'a>>,
     bodies: Vec<BodyReport<'a>>,
     recording: RecordingReport,
+    /// Why it stopped before its end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -223,28 +225,29 @@ impl<'a> Report<'a> {
         subjects: &'a [Subject],
         outcome: &Outcome,
         summary: &Summary,
+        error: Option<&SimError>,
     ) -> Self {
         let blow = |blow: &Blow| {
             let subject = &subjects[scene.events[blow.event].body];
             BlowReport {
                 time: blow.at.time,
                 body: &subject.name,
-                torque: blow.moment.tau_w.into(),
-                inverse_inertia: blow.moment.inverse_inertia_w(subject).into(),
-                angular_acceleration: blow.moment.alpha_w.into(),
-                angular_impulse: blow.jump.map(|(angular, _)| angular.into()),
-                angular_velocity_jump: blow.jump.map(|(_, turn)| turn.into()),
+                torque: blow.sample.tau_w.into(),
+                inverse_inertia: blow.sample.inverse_inertia_w(subject).into(),
+                angular_acceleration: blow.sample.alpha_w.into(),
+                angular_impulse: blow.jump.map(|jump| jump.angular_impulse_w.into()),
+                angular_velocity_jump: blow.jump.map(|jump| jump.omega_w.into()),
             }
         };
-        let body = |(subject, moment): (&'a Subject, &Moment)| BodyReport {
+        let body = |(subject, sample): (&'a Subject, &Sample)| BodyReport {
             name: &subject.name,
             about: subject.reference(),
-            position: moment.motion.position_w.into(),
-            velocity: moment.motion.velocity_w.into(),
-            orientation: moment.motion.q_wb.coords.into(),
-            angular_velocity: moment.motion.omega_w.into(),
-            angular_momentum: subject.momentum_w(&moment.motion).into(),
-            energy: subject.energy(&moment.motion),
+            position: sample.motion.position_w.into(),
+            velocity: sample.motion.velocity_w.into(),
+            orientation: sample.motion.q_wb.coords.into(),
+            angular_velocity: sample.motion.omega_w.into(),
+            angular_momentum: subject.momentum_w(&sample.motion).into(),
+            energy: subject.energy(&sample.motion),
         };
         Self {
             scene: &scene.name,
@@ -260,6 +263,7 @@ impl<'a> Report<'a> {
                 bytes: summary.bytes,
                 rows: summary.rows,
             },
+            error: error.map(ToString::to_string),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Wrong, print};
 use crate::live::page;
-use crate::record::{Assets, RERUN_VERSION, native_version_line};
+use crate::record::{Assets, MAGIC, RERUN_VERSION, native_version_line};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -21,6 +21,13 @@ pub struct Arguments {
     web: bool,
     #[command(flatten)]
     serve: Serving,
+}
+
+impl Serving {
+    /// Whether anything was asked for.
+    pub fn is_asked_for(&self) -> bool {
+        self.port != 0 || self.no_browser
+    }
 }
 
 /// How the carried viewer is served.
@@ -48,17 +55,20 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         );
         return Ok(());
     }
-    serve(&arguments.file, &arguments.serve)
+    serve(&arguments.file, &arguments.serve, false)
 }
 
-/// Serves a recording with the carried viewer until the program is stopped.
-pub fn serve(file: &Path, serving: &Serving) -> anyhow::Result<()> {
+/// Serves a recording with the carried viewer until the program is stopped. The address goes to
+/// stderr where stdout is taken.
+pub fn serve(file: &Path, serving: &Serving, stdout_taken: bool) -> anyhow::Result<()> {
     let page = page::Page::bind(serving.port, file, Assets::load()?)?;
     let address = page.address();
-    print::out(&format!(
-        "{} is at {address}  (Ctrl-C stops)",
-        file.display()
-    ))?;
+    let line = format!("{} is at {address}  (Ctrl-C stops)", file.display());
+    if stdout_taken {
+        eprintln!("{line}");
+    } else {
+        print::out(&line)?;
+    }
     if !serving.no_browser && has_screen() && webbrowser::open(&address).is_err() {
         eprintln!("no browser opened by itself; open the address above in one");
     }
@@ -71,7 +81,7 @@ fn must_be_recording(file: &Path) -> anyhow::Result<()> {
     let mut magic = [0; 4];
     let read = std::fs::File::open(file).and_then(|mut file| file.read_exact(&mut magic));
     match read {
-        Ok(()) if &magic == b"RRF2" => Ok(()),
+        Ok(()) if &magic == MAGIC => Ok(()),
         Err(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => Err(wrong(format!(
             "cannot be read: {error}; `torquescope run SCENE` makes recordings"
         ))

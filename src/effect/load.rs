@@ -56,6 +56,11 @@ impl Load {
         self.decay = Some(decay);
     }
 
+    /// Whether an effect is there that only the choice of coordinates brings.
+    pub fn has_inertial(&self) -> bool {
+        self.effects.iter().any(|effect| effect.is_inertial())
+    }
+
     /// Exponential decay of the velocities, where the scene has it.
     pub fn decay(&self) -> Option<&Decay> {
         self.decay.as_ref()

@@ -12,7 +12,7 @@ use tiny_http::{Header, Method, Request, Response, Server, StatusCode};
 #[derive(Debug, thiserror::Error)]
 pub enum PageError {
     #[error(
-        "port {port} on 127.0.0.1 cannot be served: {why}; choose another with --port, or 0 for a free one"
+        "port {port} on 127.0.0.1 cannot be served: {why}; choose another, or 0 for a free one"
     )]
     Port { port: u16, why: String },
 }
@@ -165,7 +165,7 @@ const INDEX: &str = r#"<!doctype html>
     note.remove();
   } catch (error) {
     note.textContent = "The viewer did not start (" + error + "). It needs a browser with WebGPU or WebGL 2; "
-      + "a native viewer opens the file too: rerun {name}";
+      + "a native viewer opens the file too (rerun FILE.rrd).";
   }
 })();
 </script>

@@ -10,6 +10,12 @@ pub fn parallel_axis(inertia_c: &Matrix3<f64>, mass: f64, d: Vector3<f64>) -> Ma
     inertia_c + (Matrix3::identity() * d.norm_squared() - d * d.transpose()) * mass
 }
 
+/// `R I Rᵀ`, symmetric bit for bit.
+pub fn turned(inertia: &Matrix3<f64>, r: &Matrix3<f64>) -> Matrix3<f64> {
+    let turned = r * inertia * r.transpose();
+    (turned + turned.transpose()) * 0.5
+}
+
 /// The inverse tensor of a body that some of its own axes hold: zero rows and columns for those,
 /// the inverse of the remaining block for the others.
 ///
@@ -35,8 +41,7 @@ pub fn inverse_with_immovable(inertia: &Matrix3<f64>, immovable: [bool; 3]) -> M
         [_, _, _] => {
             // Through the principal axes: symmetric bit for bit, and exact where I is diagonal.
             let (v, moments) = symmetric_eigen(inertia);
-            inverse = v * Matrix3::from_diagonal(&moments.map(f64::recip)) * v.transpose();
-            inverse = (inverse + inverse.transpose()) * 0.5;
+            inverse = turned(&Matrix3::from_diagonal(&moments.map(f64::recip)), &v);
         }
         _ => {}
     }

@@ -5,11 +5,12 @@
 
 use super::RecordError;
 use super::blueprint::{Blueprint, Part, View};
+use super::heading::Heading;
 use super::look;
 use super::mesh;
-use super::recorder::Heading;
+use super::picture::DRAWN;
 use super::rrd::RrdFile;
-use super::scale::{self, Scales};
+use super::scale;
 use crate::trace::Subject;
 use nalgebra::Vector3;
 use rerun::AsComponents;
@@ -21,13 +22,13 @@ use rerun::external::re_sdk_types::{VisualizableArchetype as _, Visualizer, comp
 
 /// What the arrangement depends on.
 pub struct Setting<'a> {
-    pub heading: &'a Heading<'a>,
+    pub heading: &'a Heading,
     pub subjects: &'a [Subject],
-    pub scales: &'a Scales,
 }
 
-/// Bodies that get a tab of their own, and lines in the plots of all bodies: what can be read.
-const MOST_TABS: usize = 12;
+/// Bodies that get a tab and a page of their own, and lines in the plots of all bodies: as many
+/// as can be read.
+pub const MOST_TABS: usize = 12;
 
 /// Samples of a line that a viewer draws one by one without effort.
 const MOST_UNTHINNED: f64 = 20_000.0;
@@ -35,7 +36,7 @@ const MOST_UNTHINNED: f64 = 20_000.0;
 /// How long the shortest event is to be seen, in seconds of watching: playback slows for it.
 const SEEN_FOR: f64 = 0.5;
 
-/// The streams a plot shows, its title, the quantity by component, the quantity as one line.
+/// A plot of one stream.
 struct Plot {
     stream: &'static str,
     title: &'static str,
@@ -83,10 +84,15 @@ pub fn notes(setting: &Setting<'_>) -> String {
         "# {}\n\n{}\n\n## Reading the picture\n\n",
         heading.title, heading.notes
     );
-    for (stream, factor) in setting.scales.sentences() {
-        let seen = stream != "force" || heading.has_pushes;
-        if heading.streams.contains(stream) && seen {
-            text += &format!("- {} ({factor})\n", meaning(stream));
+    for drawn in &DRAWN {
+        let seen = drawn.stream != "force" || heading.has_pushes;
+        if heading.streams.contains(drawn.stream) && seen {
+            let hidden = match drawn.hidden {
+                true => "; hidden at first: open the blueprint panel (top right) and click its eye",
+                false => "",
+            };
+            let factor = heading.scales.sentence(drawn);
+            text += &format!("- {} ({factor}){hidden}\n", drawn.meaning);
         }
     }
     if heading.streams.contains("inertia") {
@@ -102,18 +108,6 @@ pub fn notes(setting: &Setting<'_>) -> String {
     text + "\nA tab above for each body; every number in `/numbers/NAME`.\n"
 }
 
-fn meaning(stream: &str) -> &'static str {
-    match stream {
-        "force" => {
-            "**red arrow**: a push F, ending where it pushes; the thin line is its lever arm"
-        }
-        "torque" => "**purple, with a turning arrow**: torque τ about its axis",
-        "alpha" => "**amber arrow**: angular acceleration α",
-        "omega" => "**teal arrow**: angular velocity ω; hidden, its eye is in the blueprint panel",
-        _ => "**blue arrow**: angular momentum L; hidden, its eye is in the blueprint panel",
-    }
-}
-
 /// Writes the blueprint.
 pub fn write(file: &mut RrdFile, setting: &Setting<'_>) -> Result<(), RecordError> {
     let mut blueprint = Blueprint::new(file);
@@ -121,12 +115,12 @@ pub fn write(file: &mut RrdFile, setting: &Setting<'_>) -> Result<(), RecordErro
     for (k, subject) in setting.subjects.iter().enumerate().take(MOST_TABS) {
         tabs.push(body_tab(&mut blueprint, setting, k, subject)?);
     }
-    let root = blueprint.container(ContainerKind::Tabs, setting.heading.title, &tabs, &[])?;
+    let root = blueprint.container(ContainerKind::Tabs, &setting.heading.title, &tabs, &[])?;
     panels(&mut blueprint, setting.heading)?;
     blueprint.finish(&root)
 }
 
-fn panels(blueprint: &mut Blueprint<'_>, heading: &Heading<'_>) -> Result<(), RecordError> {
+fn panels(blueprint: &mut Blueprint<'_>, heading: &Heading) -> Result<(), RecordError> {
     let speed = heading
         .shortest_event
         .map_or(1.0, |s| scale::nice(s / SEEN_FOR).clamp(1e-3, 1.0));
@@ -144,7 +138,7 @@ fn panels(blueprint: &mut Blueprint<'_>, heading: &Heading<'_>) -> Result<(), Re
 
 fn overview(blueprint: &mut Blueprint<'_>, setting: &Setting<'_>) -> Result<Part, RecordError> {
     let all: Vec<&Subject> = setting.subjects.iter().collect();
-    let contents = SPATIAL.iter().map(|q| format!("+ /{q}/**")).collect();
+    let contents = pictured().map(|q| format!("+ /{q}/**")).collect();
     let picture = spatial(blueprint, setting, "all bodies", contents, &all)?;
     let events = text_log(blueprint)?;
     let pushes = state_timeline(blueprint)?;
@@ -195,11 +189,7 @@ fn body_tab(
     subject: &Subject,
 ) -> Result<Part, RecordError> {
     let name = &subject.name;
-    let mut contents: Vec<String> = SPATIAL
-        .iter()
-        .map(|q| format!("+ /{q}/{name}/**"))
-        .collect();
-    contents.push(format!("+ /bodies/{name}/**"));
+    let contents: Vec<String> = pictured().map(|q| format!("+ /{q}/{name}/**")).collect();
     let picture = spatial(blueprint, setting, &subject.label, contents, &[subject])?;
     let mut columns = vec![picture];
     let mut shares = vec![3.0];
@@ -229,10 +219,15 @@ fn body_tab(
     blueprint.container(ContainerKind::Horizontal, &subject.label, &columns, &shares)
 }
 
-/// What the picture holds, by quantity.
-const SPATIAL: [&str; 9] = [
-    "bodies", "labels", "pivots", "inertia", "force", "torque", "alpha", "omega", "momentum",
-];
+/// What the picture holds besides the arrows.
+const SPATIAL: [&str; 4] = ["bodies", "labels", "pivots", "inertia"];
+
+/// Everything the picture holds, by quantity.
+fn pictured() -> impl Iterator<Item = &'static str> {
+    SPATIAL
+        .into_iter()
+        .chain(DRAWN.iter().map(|drawn| drawn.stream))
+}
 
 fn spatial(
     blueprint: &mut Blueprint<'_>,
@@ -241,7 +236,7 @@ fn spatial(
     contents: Vec<String>,
     seen: &[&Subject],
 ) -> Result<Part, RecordError> {
-    let (centre, reach) = bounds(seen, setting.scales.size);
+    let (centre, reach) = bounds(seen, setting.heading.scales.size);
     // From the front, from the right and above, so that arrows along any axis have a length.
     let from = centre + Vector3::new(0.3, 0.5, 1.0).normalize() * (1.65 * reach);
     let point = |v: Vector3<f64>| components::Position3D::new(v.x as f32, v.y as f32, v.z as f32);
@@ -253,12 +248,13 @@ fn spatial(
     let floor = floor(seen);
     let grid = ba::LineGrid3D::new()
         .with_visible(true)
-        .with_spacing(scale::nice(setting.scales.size) as f32)
+        .with_spacing(scale::nice(setting.heading.scales.size) as f32)
         .with_plane(components::Plane3D::new([0.0, 1.0, 0.0], floor as f32))
         .with_color(look::GRID)
         .with_stroke_width(1.0);
     let properties: Vec<(&'static str, &dyn AsComponents)> =
         vec![("EyeControls3D", &eye), ("LineGrid3D", &grid)];
+    let hidden = DRAWN.iter().filter(|drawn| drawn.hidden);
     blueprint.view(View {
         class: "3D",
         name,
@@ -266,7 +262,7 @@ fn spatial(
         contents,
         properties,
         visualizers: Vec::new(),
-        hidden: vec!["/omega".to_owned(), "/momentum".to_owned()],
+        hidden: hidden.map(|drawn| format!("/{}", drawn.stream)).collect(),
     })
 }
 
@@ -331,7 +327,7 @@ fn magnitude_plots(
 /// The components of one body's vector.
 fn component_plot(
     blueprint: &mut Blueprint<'_>,
-    heading: &Heading<'_>,
+    heading: &Heading,
     plot: &Plot,
     index: usize,
     subject: &Subject,
@@ -365,7 +361,7 @@ fn numbers(subject: &Subject) -> String {
 }
 
 /// A line drawn from one of the number columns.
-fn line(heading: &Heading<'_>, mut series: SeriesLines, quantity: &str) -> Visualizer {
+fn line(heading: &Heading, mut series: SeriesLines, quantity: &str) -> Visualizer {
     // Rerun thins what falls on one pixel to its least and greatest value, in that order, and so
     // draws a step down as a spike. A recording short enough is drawn as it is.
     if heading.duration * heading.rate <= MOST_UNTHINNED {

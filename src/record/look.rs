@@ -15,16 +15,6 @@ pub const INERTIA: Colour = 0x37_B2_4D_FF;
 pub const PIVOT: Colour = 0x86_8E_96_FF;
 pub const NAME: Colour = 0x80_88_90_FF;
 
-/// The colours by the names of streams, for the lists and the docs.
-pub const QUANTITY_COLOURS: [(&str, Colour); 6] = [
-    ("force", FORCE),
-    ("torque", TORQUE),
-    ("alpha", ALPHA),
-    ("omega", OMEGA),
-    ("momentum", MOMENTUM),
-    ("inertia", INERTIA),
-];
-
 /// Components of a vector in a plot of one body: x, y, z.
 pub const COMPONENTS: [Colour; 3] = [0xE0_31_31_FF, 0x2B_8A_3E_FF, 0x33_7A_E0_FF];
 
@@ -88,7 +78,7 @@ mod tests {
 
     #[test]
     fn every_colour_reads_on_dark_and_on_light() {
-        let quantities = QUANTITY_COLOURS.map(|(_, colour)| colour);
+        let quantities = [FORCE, TORQUE, ALPHA, OMEGA, MOMENTUM, INERTIA];
         let all = quantities.iter().chain(&COMPONENTS).chain(&BODIES);
         for &colour in all {
             let on_white = match colour {

@@ -7,6 +7,7 @@
 
 mod blueprint;
 mod columns;
+mod heading;
 mod layout;
 mod look;
 mod mesh;
@@ -17,32 +18,27 @@ mod rrd;
 mod scale;
 mod viewer;
 
-pub use look::QUANTITY_COLOURS;
-pub use recorder::{Heading, Recorder, Summary};
-pub use scale::Scales;
+pub use heading::Heading;
+pub use recorder::{Recorder, Summary};
 pub use viewer::{Assets, native_version_line};
 
 /// The version of Rerun whose files this writes and whose viewer it carries.
 pub const RERUN_VERSION: &str = "0.36.3";
 
+/// The first bytes of a recording.
+pub const MAGIC: &[u8; 4] = b"RRF2";
+
 /// Why a recording cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[error("{path}: cannot be written: {why}; {remedy}")]
-pub struct RecordError {
-    path: String,
-    why: String,
-    remedy: String,
-}
-
-impl RecordError {
-    fn new(path: &std::path::Path, error: &dyn std::fmt::Display) -> Self {
-        Self {
-            path: path.display().to_string(),
-            why: error.to_string(),
-            remedy: "choose another place with --out, or make room and write access there"
-                .to_owned(),
-        }
-    }
+pub enum RecordError {
+    #[error("{path}: cannot be written: {why}; choose another file or folder for the recording")]
+    Create { path: String, why: String },
+    #[error(
+        "{path}: writing stopped: {why}; make room there, or record fewer streams or less often"
+    )]
+    Write { path: String, why: String },
+    #[error("{path} exists and is no recording; choose another name, so that it is not lost")]
+    Occupied { path: String },
 }
 
 impl From<RecordError> for crate::trace::SinkError {

@@ -1,10 +1,10 @@
 //! A body's numbers at an instant, as a page to read.
 
-use crate::trace::{Moment, Quantity, Shape, Subject, short};
+use crate::trace::{Quantity, Sample, Shape, Subject, short, short_numbers};
 use std::fmt::Write as _;
 
 /// Markdown with every number of `quantities`.
-pub fn page(subject: &Subject, moment: &Moment, quantities: &[&'static Quantity]) -> String {
+pub fn page(subject: &Subject, sample: &Sample, quantities: &[&'static Quantity]) -> String {
     let mut text = format!("**{}**", subject.label);
     let _ = writeln!(text, " · world axes, about the {}\n", subject.reference());
     text.push_str("| | x | y | z | length |\n|---|--:|--:|--:|--:|\n");
@@ -14,14 +14,14 @@ pub fn page(subject: &Subject, moment: &Moment, quantities: &[&'static Quantity]
         .filter(|q| matches!(q.shape, Shape::Vector | Shape::VectorPerPush))
     {
         values.clear();
-        (quantity.write)(subject, moment, &mut values);
+        (quantity.write)(subject, sample, &mut values);
         for vector in values.chunks_exact(3) {
             row(&mut text, quantity, vector);
         }
     }
     for quantity in quantities {
         values.clear();
-        (quantity.write)(subject, moment, &mut values);
+        (quantity.write)(subject, sample, &mut values);
         match quantity.shape {
             Shape::Matrix => matrix(&mut text, quantity, &values),
             Shape::Scalar if !quantity.name.ends_with("_norm") => {
@@ -34,7 +34,7 @@ pub fn page(subject: &Subject, moment: &Moment, quantities: &[&'static Quantity]
                 );
             }
             Shape::Quaternion => {
-                let parts = numbers(&values).join(", ");
+                let parts = short_numbers(&values).join(", ");
                 let _ = writeln!(text, "\n{} = ({parts}) x y z w", quantity.symbol);
             }
             Shape::Scalar | Shape::Vector | Shape::VectorPerPush => {}
@@ -51,7 +51,7 @@ fn row(text: &mut String, quantity: &Quantity, vector: &[f64]) {
     } else {
         short(length)
     };
-    let cells = numbers(vector).join(" | ");
+    let cells = short_numbers(vector).join(" | ");
     let _ = writeln!(
         text,
         "| {} {} | {cells} | {length} |",
@@ -65,15 +65,8 @@ fn matrix(text: &mut String, quantity: &Quantity, values: &[f64]) {
         "\n| **{}** {} | x | y | z |\n|---|--:|--:|--:|",
         quantity.symbol, quantity.unit
     );
-    let cells = numbers(values);
+    let cells = short_numbers(values);
     for (axis, row) in ["x", "y", "z"].iter().zip(cells.chunks_exact(3)) {
         let _ = writeln!(text, "| {axis} | {} |", row.join(" | "));
     }
-}
-
-/// Numbers that belong together: those below 1e-12 of the largest are rounding and read 0.
-fn numbers(values: &[f64]) -> Vec<String> {
-    let largest = values.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
-    let clean = |&x: &f64| if x.abs() <= 1e-12 * largest { 0.0 } else { x };
-    values.iter().map(|x| short(clean(x))).collect()
 }

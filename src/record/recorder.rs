@@ -2,15 +2,15 @@
 
 use super::RecordError;
 use super::columns::{Ends, Times, numbers, texts, vectors};
-use super::layout::{self, Setting};
+use super::heading::Heading;
+use super::layout::{self, MOST_TABS, Setting};
 use super::look;
 use super::mesh;
 use super::page;
 use super::picture::{Picture, pictures};
 use super::rrd::{RrdFile, Store};
-use super::scale::Scales;
 use crate::trace::{
-    Instant, Moment, Motion, Note, NoteKind, Quantity, Sink, SinkError, StreamSet, Subject, Track,
+    Instant, Motion, Note, NoteKind, Quantity, Sample, Sink, SinkError, Subject, Track,
 };
 use rerun::archetypes::{
     CoordinateFrame, Ellipsoids3D, Mesh3D, Points3D, RecordingInfo, StateChange, TextDocument,
@@ -18,28 +18,12 @@ use rerun::archetypes::{
 };
 use rerun::components::{Color, FillMode, MediaType, Radius, Scalar, TextLogLevel};
 use rerun::{Component as _, ComponentDescriptor, TimePoint, Timeline};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Rows a chunk: compression sees 64 KiB at a time, and a few hundred rows fill that.
 const STATE_ROWS: usize = 1024;
 const DERIVED_ROWS: usize = 256;
-
-/// What is to be recorded, besides the trace itself.
-pub struct Heading<'a> {
-    pub title: &'a str,
-    /// Markdown: what the scene shows and what to look for.
-    pub notes: &'a str,
-    /// Tells recordings apart in a viewer; the same for the same scene.
-    pub id: &'a str,
-    /// s.
-    pub duration: f64,
-    /// Of the derived streams, 1/s.
-    pub rate: f64,
-    /// Of those that last, s.
-    pub shortest_event: Option<f64>,
-    pub has_pushes: bool,
-    pub streams: StreamSet,
-}
 
 /// Writes a trace to an `.rrd` file.
 pub struct Recorder {
@@ -73,27 +57,22 @@ impl Recorder {
     /// Creates the file and writes what does not change: blueprint first, then static things.
     pub fn create(
         path: &Path,
-        heading: &Heading<'_>,
+        heading: &Heading,
         subjects: &[Subject],
-        scales: &Scales,
     ) -> Result<Self, RecordError> {
-        let mut file = RrdFile::create(path, heading.id)?;
-        let setting = Setting {
-            heading,
-            subjects,
-            scales,
-        };
+        let mut file = RrdFile::create(path, &heading.id)?;
+        let setting = Setting { heading, subjects };
         layout::write(&mut file, &setting)?;
         file.begin_recording()?;
         let mut bodies = Vec::with_capacity(subjects.len());
         file.statics("/", &[&ViewCoordinates::RIGHT_HAND_Y_UP()])?;
-        let info = RecordingInfo::new().with_name(heading.title);
+        let info = RecordingInfo::new().with_name(heading.title.as_str());
         file.statics("/__properties", &[&info])?;
         let notes = TextDocument::from_markdown(layout::notes(&setting));
         file.statics("/notes", &[&notes])?;
         for (k, subject) in subjects.iter().enumerate() {
-            let body = BodyRecorder::new(subject, heading.streams, scales);
-            body.statics(&mut file, k, heading.streams, scales)?;
+            let body = BodyRecorder::new(subject, k, heading);
+            body.statics(&mut file, k, heading)?;
             bodies.push(body);
         }
         Ok(Self {
@@ -133,9 +112,14 @@ impl Sink for Recorder {
         Ok(())
     }
 
-    fn moments(&mut self, at: Instant, moments: &[Moment]) -> Result<(), SinkError> {
-        for (body, moment) in self.bodies.iter_mut().zip(moments) {
-            body.moment(at, moment);
+    fn samples(
+        &mut self,
+        at: Instant,
+        bodies: Range<usize>,
+        samples: &[Sample],
+    ) -> Result<(), SinkError> {
+        for (body, sample) in self.bodies[bodies].iter_mut().zip(samples) {
+            body.sample(at, sample);
             if body.times.len() >= DERIVED_ROWS {
                 body.flush_derived(&mut self.file)?;
             }
@@ -177,14 +161,17 @@ fn timepoint(at: Instant) -> TimePoint {
 }
 
 impl BodyRecorder {
-    fn new(subject: &Subject, streams: StreamSet, scales: &Scales) -> Self {
+    fn new(subject: &Subject, index: usize, heading: &Heading) -> Self {
+        let streams = heading.streams;
         let quantities = streams.quantities();
+        // A page is for reading: only bodies that have a tab have one.
+        let has_page = streams.contains("numbers") && index < MOST_TABS;
         Self {
             subject: subject.clone(),
             values: quantities.iter().map(|_| Default::default()).collect(),
             quantities,
-            pictures: pictures(streams, scales),
-            pages: streams.contains("numbers").then(Vec::new),
+            pictures: pictures(streams, &heading.scales),
+            pages: has_page.then(Vec::new),
             state_times: Times::default(),
             positions: Vec::new(),
             attitudes: Vec::new(),
@@ -197,14 +184,13 @@ impl BodyRecorder {
         &self,
         file: &mut RrdFile,
         index: usize,
-        streams: StreamSet,
-        scales: &Scales,
+        heading: &Heading,
     ) -> Result<(), RecordError> {
         let subject = &self.subject;
         let name = &subject.name;
         let shape: Mesh3D = mesh::mesh(subject, look::BODIES[index % look::BODIES.len()]);
         file.statics(format!("/bodies/{name}/spin/shape"), &[&shape])?;
-        let above = [0.0, (1.2 * scales.size) as f32, 0.0];
+        let above = [0.0, (1.2 * heading.scales.size) as f32, 0.0];
         let label = Points3D::new([above])
             .with_radii([Radius::new_ui_points(0.0)])
             .with_labels([subject.label.as_str()])
@@ -219,7 +205,7 @@ impl BodyRecorder {
                 .with_colors([look::PIVOT]);
             file.statics(format!("/pivots/{name}"), &[&at, &dot])?;
         }
-        if streams.contains("inertia") {
+        if heading.streams.contains("inertia") {
             self.ellipsoid(file)?;
         }
         for picture in &self.pictures {
@@ -256,18 +242,18 @@ impl BodyRecorder {
         self.omegas.extend(motion.omega_w.iter());
     }
 
-    fn moment(&mut self, at: Instant, moment: &Moment) {
+    fn sample(&mut self, at: Instant, sample: &Sample) {
         self.times.push(at);
         for (quantity, (values, ends)) in self.quantities.iter().zip(&mut self.values) {
             let before = values.len();
-            (quantity.write)(&self.subject, moment, values);
+            (quantity.write)(&self.subject, sample, values);
             ends.push(values.len() - before);
         }
         for picture in &mut self.pictures {
-            picture.row(at, &self.subject, moment);
+            picture.row(at, &self.subject, sample);
         }
         if let Some(pages) = &mut self.pages {
-            pages.push(page::page(&self.subject, moment, &self.quantities));
+            pages.push(page::page(&self.subject, sample, &self.quantities));
         }
     }
 

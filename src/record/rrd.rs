@@ -3,8 +3,8 @@
 //! The SDK's own sink hides errors until a flush and numbers rows by the clock. Here rows and
 //! chunks are numbered in order, so that two runs of a scene give the same data.
 
-use super::RecordError;
 use super::columns::{Column, Times};
+use super::{MAGIC, RecordError};
 use rerun::external::re_log_encoding::{CrateVersion, Encoder, EncodingOptions};
 use rerun::external::re_log_types::{
     BlueprintActivationCommand, LogMsg, SetStoreInfo, StoreId, StoreInfo, StoreKind, StoreSource,
@@ -12,7 +12,7 @@ use rerun::external::re_log_types::{
 use rerun::log::{Chunk, ChunkId, RowId};
 use rerun::{AsComponents, EntityPath, TimePoint};
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{BufWriter, Read as _};
 use std::path::{Path, PathBuf};
 
 /// What recordings of this program call themselves; blueprints apply to recordings of one name.
@@ -37,22 +37,24 @@ pub enum Store {
 
 impl RrdFile {
     /// Creates the file, so that what cannot be written is known before anything is computed.
+    /// An earlier recording of that name is replaced; anything else there is left alone.
     pub fn create(path: &Path, recording_id: &str) -> Result<Self, RecordError> {
-        let fail = |error: &dyn std::fmt::Display| RecordError::new(path, error);
-        let file = File::create(path).map_err(|error| fail(&error))?;
+        must_not_be_lost(path)?;
+        let fail = |why: String| RecordError::Create {
+            path: path.display().to_string(),
+            why,
+        };
+        let file = File::create(path).map_err(|error| fail(error.to_string()))?;
         let writer = BufWriter::with_capacity(1 << 20, file);
         let options = EncodingOptions::PROTOBUF_COMPRESSED;
         let encoder = Encoder::new_eager(CrateVersion::LOCAL, options, writer)
-            .map_err(|error| fail(&error))?;
+            .map_err(|error| fail(error.to_string()))?;
+        let blueprint_id = format!("{recording_id}-blueprint");
         let mut file = Self {
             path: path.to_owned(),
             encoder,
             recording: StoreId::new(StoreKind::Recording, APPLICATION, recording_id),
-            blueprint: StoreId::new(
-                StoreKind::Blueprint,
-                APPLICATION,
-                format!("{recording_id}-blueprint"),
-            ),
+            blueprint: StoreId::new(StoreKind::Blueprint, APPLICATION, blueprint_id),
             next: 1,
             rows: 0,
         };
@@ -132,10 +134,17 @@ impl RrdFile {
             .encoder
             .finish()
             .and_then(|()| self.encoder.flush_blocking());
-        done.map_err(|error| RecordError::new(&self.path, &error))?;
+        done.map_err(|error| self.stopped(&error))?;
         let metadata = std::fs::metadata(&self.path);
-        let metadata = metadata.map_err(|error| RecordError::new(&self.path, &error))?;
+        let metadata = metadata.map_err(|error| self.stopped(&error))?;
         Ok((metadata.len(), self.rows))
+    }
+
+    fn stopped(&self, error: &dyn std::fmt::Display) -> RecordError {
+        RecordError::Write {
+            path: self.path.display().to_string(),
+            why: error.to_string(),
+        }
     }
 
     fn open(&mut self, store: Store) -> Result<(), RecordError> {
@@ -153,7 +162,7 @@ impl RrdFile {
         store: Store,
         chunk: Result<Chunk, E>,
     ) -> Result<(), RecordError> {
-        let fail = |error: &dyn std::fmt::Display| RecordError::new(&self.path, error);
+        let fail = |error: &dyn std::fmt::Display| self.stopped(error);
         let chunk = chunk.map_err(|error| fail(&error))?;
         let message = chunk.to_arrow_msg().map_err(|error| fail(&error))?;
         self.append(&LogMsg::ArrowMsg(self.id(store), message))
@@ -162,7 +171,7 @@ impl RrdFile {
     fn append(&mut self, message: &LogMsg) -> Result<(), RecordError> {
         match self.encoder.append(message) {
             Ok(_) => Ok(()),
-            Err(error) => Err(RecordError::new(&self.path, &error)),
+            Err(error) => Err(self.stopped(&error)),
         }
     }
 
@@ -186,4 +195,17 @@ impl RrdFile {
         self.next += 1;
         (1 << 64) | u128::from(self.next)
     }
+}
+
+/// A file that is there and is no recording was put there for something else.
+fn must_not_be_lost(path: &Path) -> Result<(), RecordError> {
+    let is_file = std::fs::metadata(path).is_ok_and(|data| data.is_file() && data.len() > 0);
+    let mut magic = [0; MAGIC.len()];
+    let mut read = || File::open(path).and_then(|mut file| file.read_exact(&mut magic));
+    if is_file && (read().is_err() || &magic != MAGIC) {
+        return Err(RecordError::Occupied {
+            path: path.display().to_string(),
+        });
+    }
+    Ok(())
 }

@@ -1,74 +1,42 @@
 //! How long an arrow is drawn: metres per unit, one stated factor per quantity.
 //!
 //! The factor is a round number, the largest at which the largest value to be expected is drawn no
-//! longer than its reach in radii of a typical body: long enough to stick out of a solid mesh.
-//! What to expect comes from the events on the bodies as they start, so that the factor stands
-//! before the first step.
+//! longer than its reach in radii of a typical body. What to expect comes from the events on the
+//! bodies as they start, so that the factor stands before the first step.
 
 use super::mesh;
-use crate::trace::{Moment, Subject};
+use super::picture::{DRAWN, Drawn};
+use crate::sim::Sizes;
+use crate::trace::{Subject, short};
 
-/// Longest arrows, in radii of a typical body. Angular acceleration reaches further than torque:
-/// where both lie along one axis, both heads are seen.
-const FORCE_REACH: f64 = 1.6;
-const TORQUE_REACH: f64 = 1.8;
-const ALPHA_REACH: f64 = 2.4;
-
-/// Metres per N, N·m, rad/s², rad/s and kg m²/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Metres per unit of each quantity that is drawn.
+#[derive(Clone, Debug)]
 pub struct Scales {
-    pub force: f64,
-    pub torque: f64,
-    pub alpha: f64,
-    pub omega: f64,
-    pub momentum: f64,
+    /// In the order of [`DRAWN`].
+    factors: Vec<f64>,
     /// A typical body's radius, m: what the scales and the camera go by.
     pub size: f64,
 }
 
 impl Scales {
-    /// From what the events would do at the start; `expected` holds every body once per event.
-    pub fn new(subjects: &[Subject], expected: &[Moment], reach: f64) -> Self {
+    pub fn new(subjects: &[Subject], expected: &Sizes) -> Self {
         let size = typical(subjects.iter().map(mesh::radius));
-        let bodies = || expected.iter().zip(subjects.iter().cycle());
-        let largest = |value: &dyn Fn(&Moment, &Subject) -> f64| {
-            bodies()
-                .map(|(m, s)| value(m, s))
-                .filter(|x| x.is_finite())
-                .fold(0.0, f64::max)
-        };
-        let force = largest(&|m, _| {
-            m.pushes
-                .iter()
-                .map(|p| p.force_w.norm())
-                .fold(0.0, f64::max)
-        });
-        let torque = largest(&|m, _| m.tau_w.norm());
-        let alpha = largest(&|m, _| m.alpha_w.norm());
-        // What the velocities reach: the start, and the longest event at its first acceleration.
-        let omega = largest(&|m, _| m.motion.omega_w.norm() + m.alpha_w.norm() * reach);
-        let momentum = largest(&|m, s| s.momentum_w(&m.motion).norm() + m.tau_w.norm() * reach);
-        let factor = |largest: f64, reach: f64| nice(reach * size / largest);
+        let factor = |drawn: &Drawn| nice(drawn.reach * size / (drawn.size)(expected));
         Self {
-            force: factor(force, FORCE_REACH),
-            torque: factor(torque, TORQUE_REACH),
-            alpha: factor(alpha, ALPHA_REACH),
-            omega: factor(omega, ALPHA_REACH),
-            momentum: factor(momentum, TORQUE_REACH),
+            factors: DRAWN.iter().map(factor).collect(),
             size,
         }
     }
 
-    /// `1 N is drawn 0.1 m long`, for each quantity.
-    pub fn sentences(&self) -> Vec<(&'static str, String)> {
-        let say = |unit: &str, factor: f64| format!("1 {unit} = {} m", crate::trace::short(factor));
-        vec![
-            ("force", say("N", self.force)),
-            ("torque", say("N·m", self.torque)),
-            ("alpha", say("rad/s²", self.alpha)),
-            ("omega", say("rad/s", self.omega)),
-            ("momentum", say("kg m²/s", self.momentum)),
-        ]
+    /// Metres per unit.
+    pub fn of(&self, drawn: &Drawn) -> f64 {
+        let index = DRAWN.iter().position(|other| other.stream == drawn.stream);
+        index.map_or(1.0, |index| self.factors[index])
+    }
+
+    /// `1 N = 0.15 m`.
+    pub fn sentence(&self, drawn: &Drawn) -> String {
+        format!("1 {} = {} m", drawn.unit, short(self.of(drawn)))
     }
 }
 
@@ -80,6 +48,8 @@ fn typical(sizes: impl Iterator<Item = f64>) -> f64 {
     sizes.sort_by(f64::total_cmp);
     sizes.get(sizes.len() / 2).copied().unwrap_or(1.0)
 }
+
+const DIGITS: [f64; 8] = [8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0];
 
 /// The largest round number (one of [`DIGITS`] times a power of ten) not above `x`; 1 for what is
 /// not usable.
@@ -95,8 +65,6 @@ pub fn nice(x: f64) -> f64 {
         .parse()
         .unwrap_or(1.0)
 }
-
-const DIGITS: [f64; 8] = [8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0];
 
 #[cfg(test)]
 mod tests {

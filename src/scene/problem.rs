@@ -54,10 +54,6 @@ impl Problems {
         self.list.is_empty()
     }
 
-    pub fn len(&self) -> usize {
-        self.list.len()
-    }
-
     /// Line and column, both from 1, the column in characters.
     fn position(&self, offset: usize) -> (usize, usize) {
         let mut start = offset;

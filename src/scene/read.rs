@@ -14,10 +14,14 @@ const DEFAULT_STEP: f64 = 1e-3;
 const DEFAULT_RATE: f64 = 60.0;
 /// Times are recorded as whole nanoseconds in 63 bits, which is 292 years.
 const LONGEST: f64 = 9.2e9;
+/// The unit of a recording's clock, s.
+const SHORTEST_STEP: f64 = 1e-9;
 /// More steps than this cannot be counted exactly in an f64 (2⁵³), nor waited for.
 const MOST_STEPS: f64 = 9e15;
 
 pub(super) fn scene(file: &str, name: &str, source: &str) -> Result<Scene, Problems> {
+    // Some editors open a file with a mark of its encoding.
+    let source = source.strip_prefix('\u{feff}').unwrap_or(source);
     let mut problems = Problems::new(file, source);
     let (document, errors) = DeTable::parse_recoverable(source);
     for error in &errors {
@@ -106,15 +110,17 @@ fn stepping(
     };
     let step = match table.get("step") {
         None => Some(DEFAULT_STEP),
-        Some(node) => node.positive("s", problems).filter(|step| {
+        Some(node) => node.positive("s", problems).filter(|&step| {
             let steps = duration.unwrap_or(0.0) / step;
-            if steps > MOST_STEPS {
-                node.problem(
-                    format!("makes {steps:.1e} steps of this scene; at most {MOST_STEPS:e} can be counted"),
-                    problems,
-                );
-            }
-            steps <= MOST_STEPS
+            let why = if step < SHORTEST_STEP {
+                format!("is below a nanosecond, the finest time a recording tells apart ({SHORTEST_STEP:e} s)")
+            } else if steps > MOST_STEPS {
+                format!("makes {steps:.1e} steps of this scene; at most {MOST_STEPS:e} can be counted")
+            } else {
+                return true;
+            };
+            node.problem(why, problems);
+            false
         }),
     };
     table.check_keys(problems);

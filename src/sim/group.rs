@@ -1,14 +1,18 @@
 //! Up to eight bodies stepped together, and their translation to and from body axes.
 
+use super::Jump;
+use super::schedule::Step;
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
-use crate::effect::{Called, Couple, Effect, Frame, Load, Push};
+use crate::effect::{Called, Couple, Effect, Frame, Load, Push, WrenchBlock};
 use crate::integrator::Method;
+use crate::mass::tensor;
 use crate::scene::{Action, Body, Framed, Scene};
-use crate::trace::{Moment, Motion, PointForce, Subject};
+use crate::trace::{Motion, PointForce, Sample, Subject};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
 use std::sync::Arc;
 
+#[derive(Clone)]
 pub struct Group {
     /// Indices of its bodies in the scene; `members.start` is lane 0.
     pub members: Range<usize>,
@@ -17,10 +21,11 @@ pub struct Group {
     load: Load,
     /// The pushes in `load`, for the force arrows.
     pushes: Vec<Push>,
-    /// Principal axes → body axes of each lane.
-    q_bp: [UnitQuaternion<f64>; LANES],
-    /// The turn that the last step but the broken one made is judged by this velocity.
-    last_finite: StateBlock,
+    /// Body axes → principal axes of each lane.
+    q_pb: [UnitQuaternion<f64>; LANES],
+    /// The state before the stretch that is being taken, and after each of its steps.
+    before: StateBlock,
+    after: Vec<StateBlock>,
 }
 
 /// What about a body does not change, for the trace.
@@ -32,8 +37,7 @@ pub fn subject(body: &Body) -> Subject {
         if r.matrix() == &nalgebra::Matrix3::identity() {
             return diagonal;
         }
-        let tensor = r.matrix() * diagonal * r.matrix().transpose();
-        (tensor + tensor.transpose()) * 0.5
+        tensor::turned(&diagonal, r.matrix())
     };
     Subject {
         name: body.name.clone(),
@@ -56,7 +60,7 @@ pub fn subject(body: &Body) -> Subject {
     }
 }
 
-/// The bodies of a scene in groups of eight, at rest as the scene starts them.
+/// The bodies of a scene in groups of eight, as the scene starts them.
 pub fn groups(bodies: &[Body]) -> Vec<Group> {
     let starts = (0..bodies.len()).step_by(LANES);
     starts
@@ -75,22 +79,43 @@ impl Group {
             state: StateBlock::default(),
             load: Load::default(),
             pushes: Vec::new(),
-            q_bp: [UnitQuaternion::identity(); LANES],
-            last_finite: StateBlock::default(),
+            before: StateBlock::default(),
+            after: Vec::new(),
+            q_pb: [UnitQuaternion::identity(); LANES],
         };
         for (lane, body) in bodies.iter().enumerate() {
             let (inertial, q_bp) = Inertial::new(&body.properties, body.pivot_b);
-            group.q_bp[lane] = q_bp;
+            group.q_pb[lane] = q_bp.inverse();
             group.inertial.set(lane, inertial);
             group.state.set(lane, start(body, q_bp));
         }
-        group.last_finite = group.state;
         group
     }
 
-    pub fn step(&mut self, method: &dyn Method, t: f64, h: f64) {
-        self.last_finite = self.state;
-        method.step(t, h, &self.load, &self.inertial, &mut self.state);
+    /// Takes a stretch of steps. Where a body's state is lost it stops after that step: how many
+    /// steps it took, and the body.
+    pub fn advance(&mut self, method: &dyn Method, steps: &[Step]) -> Option<(usize, usize)> {
+        self.before = self.state;
+        self.after.clear();
+        for step in steps {
+            method.step(
+                step.from,
+                step.h,
+                &self.load,
+                &self.inertial,
+                &mut self.state,
+            );
+            self.after.push(self.state);
+            if let Some(body) = self.first_not_finite() {
+                return Some((self.after.len(), body));
+            }
+        }
+        None
+    }
+
+    /// Back to before the last stretch.
+    pub fn rewind(&mut self) {
+        self.state = self.before;
     }
 
     /// The first body whose state is not finite.
@@ -100,10 +125,21 @@ impl Group {
         Some(self.members.start + lane)
     }
 
-    /// Radians a body turned in a step of `h` before its state was lost.
-    pub fn turn_before_loss(&self, body: usize, h: f64) -> f64 {
+    /// Radians a body turned in a step of `h` before its state was lost: the last turn in which
+    /// the body still turned less than a whole turn, or the first there is.
+    pub fn turn_in_a_step(&self, body: usize, h: f64) -> f64 {
         let lane = body - self.members.start;
-        self.last_finite.get(lane).omega_w.norm() * h
+        let turn = |block: &StateBlock| block.get(lane).omega_w.norm() * h;
+        let sane = self
+            .after
+            .iter()
+            .map(turn)
+            .rfind(|&x| x < std::f64::consts::TAU);
+        sane.unwrap_or_else(|| turn(&self.before))
+    }
+
+    pub fn has_inertial_effect(&self) -> bool {
+        self.load.has_inertial()
     }
 
     /// The effects of the scene and the active events that concern this group.
@@ -142,13 +178,8 @@ impl Group {
     }
 
     /// An impulse at a point (N·s) or, without one, an angular impulse (N·m·s):
-    /// `Δv = J/m`, `Δω = I_w⁻¹ ((p - x) × J)`. Returns the angular impulse and Δω.
-    pub fn strike(
-        &mut self,
-        index: usize,
-        impulse: Framed,
-        point: Option<Framed>,
-    ) -> (Vector3<f64>, Vector3<f64>) {
+    /// `Δv = J/m`, `Δω = I_w⁻¹ ((p - x) × J)`.
+    pub fn strike(&mut self, index: usize, impulse: Framed, point: Option<Framed>) -> Jump {
         let lane = index - self.members.start;
         let mut state = self.state.get(lane);
         let inertial = self.inertial.get(lane);
@@ -164,46 +195,69 @@ impl Group {
         let turn_w = inertial.angular_response(&state, angular_w);
         state.omega_w += turn_w;
         self.state.set(lane, state);
-        (angular_w, turn_w)
+        Jump {
+            angular_impulse_w: angular_w,
+            omega_w: turn_w,
+        }
     }
 
     /// The states as poses of the bodies' own axes and centres of mass.
     pub fn motions(&self) -> impl Iterator<Item = Motion> + '_ {
-        (0..self.members.len()).map(|lane| self.motion(lane))
+        self.poses(&self.state)
+    }
+
+    /// The same after step `k` of the last stretch.
+    pub fn motions_after(&self, k: usize) -> impl Iterator<Item = Motion> + '_ {
+        self.poses(&self.after[k])
+    }
+
+    fn poses<'a>(&'a self, block: &'a StateBlock) -> impl Iterator<Item = Motion> + 'a {
+        (0..self.members.len()).map(move |lane| self.motion(lane, block.get(lane)))
     }
 
     /// The states and what the model says follows, at time `t`.
-    pub fn moments(&self, t: f64) -> Vec<Moment> {
-        let total = self.load.wrench(t, &self.inertial, &self.state);
-        let applied = self.load.applied(t, &self.inertial, &self.state);
-        let rate = self.load.decay().map(|decay| decay.angular_rate());
-        let moment = |lane| {
-            let (state, inertial) = (self.state.get(lane), self.inertial.get(lane));
-            let mut tau_w = applied.get(lane).tau_w;
-            let mut alpha_w = inertial.angular_response(&state, total.get(lane).tau_w);
-            if let Some(rate) = rate {
-                tau_w -= inertial.momentum_w(&state) * rate;
-                alpha_w -= state.omega_w * rate;
-            }
-            let pushes = self.pushes.iter().filter(|push| push.lane == lane);
-            Moment {
-                motion: self.motion(lane),
-                tau_w,
-                alpha_w,
-                pushes: pushes.map(|push| acting(push, &state)).collect(),
-            }
-        };
-        (0..self.members.len()).map(moment).collect()
+    pub fn samples(&self, t: f64) -> Vec<Sample> {
+        let (total, applied) = self.wrenches(t);
+        (0..self.members.len())
+            .map(|lane| self.sample_of(lane, &total, &applied))
+            .collect()
     }
 
-    fn motion(&self, lane: usize) -> Motion {
-        let state = self.state.get(lane);
+    /// The same of one body.
+    pub fn sample(&self, body: usize, t: f64) -> Sample {
+        let (total, applied) = self.wrenches(t);
+        self.sample_of(body - self.members.start, &total, &applied)
+    }
+
+    fn wrenches(&self, t: f64) -> (WrenchBlock, WrenchBlock) {
+        let total = self.load.wrench(t, &self.inertial, &self.state);
+        (total, self.load.applied(t, &self.inertial, &self.state))
+    }
+
+    fn sample_of(&self, lane: usize, total: &WrenchBlock, applied: &WrenchBlock) -> Sample {
+        let (state, inertial) = (self.state.get(lane), self.inertial.get(lane));
+        let mut tau_w = applied.get(lane).tau_w;
+        let mut alpha_w = inertial.angular_response(&state, total.get(lane).tau_w);
+        if let Some(decay) = self.load.decay() {
+            tau_w -= inertial.momentum_w(&state) * decay.angular_rate();
+            alpha_w -= state.omega_w * decay.angular_rate();
+        }
+        let pushes = self.pushes.iter().filter(|push| push.lane == lane);
+        Sample {
+            motion: self.motion(lane, state),
+            tau_w,
+            alpha_w,
+            pushes: pushes.map(|push| acting(push, &state)).collect(),
+        }
+    }
+
+    fn motion(&self, lane: usize, state: State) -> Motion {
         let arm_w = state.to_world(self.inertial.get(lane).centre_p);
         let q_wp = UnitQuaternion::new_unchecked(state.q_wp);
         Motion {
             position_w: state.x_w + arm_w,
             velocity_w: state.v_w + state.omega_w.cross(&arm_w),
-            q_wb: q_wp * self.q_bp[lane].inverse(),
+            q_wb: q_wp * self.q_pb[lane],
             omega_w: state.omega_w,
         }
     }
@@ -211,7 +265,7 @@ impl Group {
     fn direction(&self, lane: usize, vector: Framed) -> Frame {
         match vector {
             Framed::World(v) => Frame::World(v),
-            Framed::Body(v) => Frame::Principal(self.q_bp[lane].inverse() * v),
+            Framed::Body(v) => Frame::Principal(self.q_pb[lane] * v),
         }
     }
 
@@ -219,7 +273,7 @@ impl Group {
         match point {
             Framed::World(p) => Frame::World(p),
             Framed::Body(p) => {
-                let from_centre_p = self.q_bp[lane].inverse() * p;
+                let from_centre_p = self.q_pb[lane] * p;
                 Frame::Principal(from_centre_p + self.inertial.get(lane).centre_p)
             }
         }

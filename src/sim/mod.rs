@@ -3,9 +3,15 @@
 mod group;
 mod schedule;
 mod script;
+mod sizes;
 
-use crate::scene::{Action, Scene, StateRate};
-use crate::trace::{Instant, Moment, Motion, Note, NoteKind, Sink, SinkError, Subject, Track};
+pub use sizes::Sizes;
+
+use crate::body::LANES;
+use crate::scene::{Action, Scene};
+use crate::trace::{
+    Instant, Motion, Note, NoteKind, Sample, Sink, SinkError, Subject, Track, short,
+};
 use group::Group;
 use nalgebra::Vector3;
 use schedule::{Mark, Schedule, Step};
@@ -21,13 +27,13 @@ pub struct Simulation<'s> {
 }
 
 /// What a run leaves besides its trace.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Outcome {
     pub steps: u64,
     /// Every event as it struck.
     pub blows: Vec<Blow>,
-    /// All bodies at the end.
-    pub end: Vec<Moment>,
+    /// All bodies at the end, or where the run stopped.
+    pub end: Vec<Sample>,
 }
 
 /// A body at the instant an event began.
@@ -37,17 +43,25 @@ pub struct Blow {
     /// Index of the event.
     pub event: usize,
     /// Just after the event began.
-    pub moment: Moment,
-    /// For an impulse: the angular impulse about the reference point (N·m·s) and the jump of the
-    /// angular velocity (rad/s), world.
-    pub jump: Option<(Vector3<f64>, Vector3<f64>)>,
+    pub sample: Sample,
+    /// For an impulse.
+    pub jump: Option<Jump>,
+}
+
+/// What an impulse does to a body, world axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    /// About the reference point, N·m·s.
+    pub angular_impulse_w: Vector3<f64>,
+    /// Δω, rad/s.
+    pub omega_w: Vector3<f64>,
 }
 
 /// Why a run stopped before its end.
 #[derive(Debug, thiserror::Error)]
 pub enum SimError {
     #[error(
-        "{body} is no longer finite at t = {time} s, step {step}, by {method}: {cause}; the recording holds everything up to that instant"
+        "{body} is no longer finite at t = {time} s, step {step}, by {method}: {cause}; everything up to that instant is recorded"
     )]
     NotFinite {
         body: String,
@@ -62,12 +76,16 @@ pub enum SimError {
 
 impl<'s> Simulation<'s> {
     pub fn new(scene: &'s Scene) -> Self {
-        Self {
+        let mut simulation = Self {
             scene,
             subjects: scene.bodies.iter().map(group::subject).collect(),
             groups: group::groups(&scene.bodies),
             active: Vec::new(),
+        };
+        for group in &mut simulation.groups {
+            group.load(scene, &[]);
         }
+        simulation
     }
 
     /// The bodies, as the trace names them.
@@ -75,88 +93,139 @@ impl<'s> Simulation<'s> {
         &self.subjects
     }
 
-    /// What every event would do to the bodies as they start out: the sizes to expect.
-    pub fn expected(&mut self) -> Vec<Moment> {
-        let mut expected = Vec::new();
-        for k in 0..self.scene.events.len() {
-            self.active = vec![k];
-            self.load();
-            expected.extend(self.moments(0.0));
+    /// The largest of each quantity to be expected, from every event on its body as it starts.
+    pub fn expected(&self) -> Sizes {
+        let mut sizes = Sizes::default();
+        for (subject, sample) in self.subjects.iter().zip(self.samples(0.0)) {
+            sizes.count(subject, &sample, 0.0);
         }
-        self.active.clear();
-        self.load();
-        expected.extend(self.moments(0.0));
-        expected
+        for (k, event) in self.scene.events.iter().enumerate() {
+            let subject = &self.subjects[event.body];
+            let mut group = self.group_of(event.body).clone();
+            begin(&mut group, self.scene, k);
+            group.load(self.scene, &[k]);
+            sizes.count(
+                subject,
+                &group.sample(event.body, event.at),
+                event.action.lasts(),
+            );
+        }
+        sizes
     }
 
-    /// Steps the scene from its start to its end.
-    pub fn run(mut self, sink: &mut dyn Sink) -> Result<Outcome, SimError> {
+    /// Steps the scene from its start to its end. The outcome tells what there was until it
+    /// ended or stopped.
+    pub fn run(mut self, sink: &mut dyn Sink) -> (Outcome, Result<(), SimError>) {
+        let mut outcome = Outcome::default();
         let mut schedule = Schedule::new(self.scene);
-        let mut blows = Vec::new();
-        self.load();
+        let done = self.play(&mut schedule, &mut outcome, sink);
+        let now = schedule.now();
+        outcome.steps = now.step;
+        outcome.end = self.samples(now.time);
+        (outcome, done)
+    }
+
+    fn play(
+        &mut self,
+        schedule: &mut Schedule<'_>,
+        outcome: &mut Outcome,
+        sink: &mut dyn Sink,
+    ) -> Result<(), SimError> {
         let start = schedule.now();
+        self.happen(start, &script::at_start(self.scene), outcome, sink)?;
         self.deliver_motions(start, sink)?;
-        self.happen(start, &script::at_start(self.scene), &mut blows, sink)?;
+        sink.samples(start, 0..self.subjects.len(), &self.samples(start.time))?;
+        self.must_be_finite(start, sink)?;
         while let Some((steps, mark)) = schedule.next_stretch() {
-            self.stretch(&steps, sink)?;
+            if let Some((taken, body)) = self.stretch(&steps, sink)? {
+                schedule.stop_after(&steps[taken - 1]);
+                let at = steps[taken - 1].after;
+                return Err(self.not_finite(at, body, sink));
+            }
             let now = schedule.now();
             match mark {
                 Mark::None => {}
-                Mark::Display => sink.moments(now, &self.moments(now.time))?,
-                Mark::Events(happenings) => {
-                    sink.moments(now, &self.moments(now.time))?;
-                    self.happen(now, &happenings, &mut blows, sink)?;
+                Mark::Display => {
+                    sink.samples(now, 0..self.subjects.len(), &self.samples(now.time))?;
+                }
+                Mark::Events {
+                    happenings,
+                    display,
+                } => {
+                    if display {
+                        sink.samples(now, 0..self.subjects.len(), &self.samples(now.time))?;
+                    } else {
+                        self.deliver_touched(now, &happenings, sink)?;
+                    }
+                    let jumped = self.happen(now, &happenings, outcome, sink)?;
+                    if jumped {
+                        self.deliver_motions(now, sink)?;
+                    }
+                    self.deliver_touched(now, &happenings, sink)?;
+                    self.must_be_finite(now, sink)?;
                 }
             }
         }
-        let now = schedule.now();
-        Ok(Outcome {
-            steps: now.step,
-            blows,
-            end: self.moments(now.time),
-        })
+        Ok(())
     }
 
-    /// Takes every group through a stretch without events, one group after another.
-    fn stretch(&mut self, steps: &[Step], sink: &mut dyn Sink) -> Result<(), SimError> {
-        let mut broken: Option<(Instant, usize)> = None;
+    /// Takes every group through a stretch without events, one group after another. Where a state
+    /// is lost: the steps taken until then, by all groups alike, and the body.
+    fn stretch(
+        &mut self,
+        steps: &[Step],
+        sink: &mut dyn Sink,
+    ) -> Result<Option<(usize, usize)>, SimError> {
+        let method = self.scene.method;
+        let mut lost: Option<(usize, usize)> = None;
         for group in &mut self.groups {
-            let mut instants = Vec::with_capacity(steps.len());
-            let mut motions = Vec::with_capacity(steps.len() * group.members.len());
-            for step in steps {
-                group.step(self.scene.method, step.from, step.h);
-                let lost = group.first_not_finite();
-                if step.keep || lost.is_some() {
-                    instants.push(step.after);
-                    motions.extend(group.motions());
-                }
-                if let Some(body) = lost {
-                    if broken.is_none_or(|(at, _)| step.after.step < at.step) {
-                        broken = Some((step.after, body));
-                    }
-                    break;
-                }
+            let found = group.advance(method, steps);
+            lost = match (lost, found) {
+                (Some(a), Some(b)) => Some(if b.0 < a.0 { b } else { a }),
+                (a, b) => a.or(b),
+            };
+        }
+        let taken = lost.map_or(steps.len(), |(taken, _)| taken);
+        if lost.is_some() {
+            for group in &mut self.groups {
+                group.rewind();
+                group.advance(method, &steps[..taken]);
             }
+        }
+        let kept = |(k, step): (usize, &Step)| {
+            (step.keep || (lost.is_some() && k + 1 == taken)).then_some((k, step.after))
+        };
+        let kept: Vec<(usize, Instant)> =
+            steps[..taken].iter().enumerate().filter_map(kept).collect();
+        let instants: Vec<Instant> = kept.iter().map(|&(_, at)| at).collect();
+        for group in &self.groups {
+            let motions: Vec<Motion> = kept
+                .iter()
+                .flat_map(|&(k, _)| group.motions_after(k))
+                .collect();
             sink.motions(&Track {
                 bodies: group.members.clone(),
                 instants: &instants,
                 motions: &motions,
             })?;
         }
-        match broken {
+        Ok(lost)
+    }
+
+    fn must_be_finite(&self, now: Instant, sink: &mut dyn Sink) -> Result<(), SimError> {
+        match self.groups.iter().find_map(Group::first_not_finite) {
             None => Ok(()),
-            Some((at, body)) => Err(self.not_finite(at, body, sink)),
+            Some(body) => Err(self.not_finite(now, body, sink)),
         }
     }
 
     /// Records the broken instant in full and says what happened.
     fn not_finite(&self, at: Instant, body: usize, sink: &mut dyn Sink) -> SimError {
-        let method = self.scene.method.info().name;
         let error = SimError::NotFinite {
             body: self.subjects[body].name.clone(),
             time: at.time,
             step: at.step,
-            method,
+            method: self.scene.method.info().name,
             cause: self.cause(body),
         };
         let note = Note {
@@ -165,7 +234,7 @@ impl<'s> Simulation<'s> {
             kind: NoteKind::Failure,
         };
         let written = sink
-            .moments(at, &self.moments(at.time))
+            .samples(at, 0..self.subjects.len(), &self.samples(at.time))
             .and_then(|()| sink.note(at, &note));
         match written {
             Ok(()) => error,
@@ -175,101 +244,97 @@ impl<'s> Simulation<'s> {
 
     /// The likeliest reason for a state that is not finite.
     fn cause(&self, body: usize) -> String {
-        let group = &self.groups[body / crate::body::LANES];
-        let turned = group.turn_before_loss(body, self.scene.step);
-        let gyroscopic = self
-            .scene
-            .effects
-            .iter()
-            .any(|(name, _)| *name == "gyroscopic");
-        if gyroscopic && turned > 0.1 {
-            format!(
-                "it turned {turned:.3} rad in the step before, too far for the gyroscopic term; take a smaller step or another method"
-            )
-        } else {
-            "a force, an impulse or a speed is too large for 64-bit numbers; look at the events and the initial state".to_owned()
+        /// Radians a step, beyond which a term of second order in ω h is no longer small.
+        const FAR: f64 = 0.1;
+        let group = self.group_of(body);
+        let turned = group.turn_in_a_step(body, self.scene.step);
+        if group.has_inertial_effect() && turned > FAR {
+            let turned = short(turned);
+            return format!(
+                "it turned {turned} rad a step, too far for the gyroscopic term; take a smaller step or another method"
+            );
         }
+        "a force, an impulse, a speed or a mass is too large or too small for 64-bit numbers; look at the events and the start".to_owned()
     }
 
-    /// Ends and begins events, delivers all bodies as they are just after, and writes the log.
+    /// Ends and begins events and writes the log; true where a velocity jumped.
     fn happen(
         &mut self,
         now: Instant,
         happenings: &[Happening],
-        blows: &mut Vec<Blow>,
+        outcome: &mut Outcome,
         sink: &mut dyn Sink,
-    ) -> Result<(), SimError> {
-        let mut jumps = Vec::new();
-        for happening in happenings {
+    ) -> Result<bool, SimError> {
+        let mut jumps = vec![None; happenings.len()];
+        for (happening, jump) in happenings.iter().zip(&mut jumps) {
             match *happening {
                 Happening::Ends(k) => self.active.retain(|&active| active != k),
                 Happening::Begins(k) => {
-                    let jump = self.begin(k);
-                    jumps.push((k, jump));
+                    let body = self.scene.events[k].body;
+                    *jump = begin(&mut self.groups[body / LANES], self.scene, k);
+                    if jump.is_none() {
+                        self.active.push(k);
+                    }
                 }
             }
         }
-        self.load();
-        if jumps.iter().any(|(_, jump)| jump.is_some()) {
-            self.deliver_motions(now, sink)?;
+        for body in self.touched(happenings) {
+            self.groups[body / LANES].load(self.scene, &self.active);
         }
-        let moments = self.moments(now.time);
-        sink.moments(now, &moments)?;
-        for happening in happenings {
+        for (happening, &jump) in happenings.iter().zip(&jumps) {
+            let event = &self.scene.events[happening.event()];
+            let subject = &self.subjects[event.body];
+            let sample = self.group_of(event.body).sample(event.body, now.time);
             let note = match *happening {
-                Happening::Ends(k) => {
-                    script::end_note(&self.scene.events[k], &self.subjects, &moments)
-                }
+                Happening::Ends(_) => script::end_note(event, subject, &sample),
                 Happening::Begins(k) => {
-                    let jump = jumps
-                        .iter()
-                        .find(|(event, _)| *event == k)
-                        .and_then(|(_, j)| *j);
-                    let event = &self.scene.events[k];
-                    blows.push(Blow {
+                    let note = script::begin_note(event, subject, &sample, jump);
+                    outcome.blows.push(Blow {
                         at: now,
                         event: k,
-                        moment: moments[event.body].clone(),
+                        sample,
                         jump,
                     });
-                    script::begin_note(event, &self.subjects, &moments, jump)
+                    note
                 }
             };
             sink.note(now, &note)?;
         }
-        match self.groups.iter().find_map(Group::first_not_finite) {
-            None => Ok(()),
-            Some(body) => Err(self.not_finite(now, body, sink)),
-        }
+        Ok(jumps.iter().any(Option::is_some))
     }
 
-    /// Starts an event. An impulse acts at once: angular impulse and jump of ω are returned.
-    fn begin(&mut self, k: usize) -> Option<(Vector3<f64>, Vector3<f64>)> {
-        let event = &self.scene.events[k];
-        let group = &mut self.groups[event.body / crate::body::LANES];
-        match event.action {
-            Action::Push { .. } | Action::Torque { .. } => {
-                self.active.push(k);
-                None
-            }
-            Action::Impulse { impulse, point } => {
-                Some(group.strike(event.body, impulse, Some(point)))
-            }
-            Action::AngularImpulse { impulse } => Some(group.strike(event.body, impulse, None)),
-        }
+    /// The bodies that some events concern, each once.
+    fn touched(&self, happenings: &[Happening]) -> Vec<usize> {
+        let bodies = happenings
+            .iter()
+            .map(|happening| self.scene.events[happening.event()].body);
+        let mut bodies: Vec<usize> = bodies.collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        bodies
     }
 
-    /// Rebuilds what acts on each group: the scene's effects, then the events that act now.
-    fn load(&mut self) {
-        for group in &mut self.groups {
-            group.load(self.scene, &self.active);
+    fn deliver_touched(
+        &self,
+        now: Instant,
+        happenings: &[Happening],
+        sink: &mut dyn Sink,
+    ) -> Result<(), SinkError> {
+        for body in self.touched(happenings) {
+            let sample = self.group_of(body).sample(body, now.time);
+            sink.samples(now, body..body + 1, &[sample])?;
         }
+        Ok(())
     }
 
-    fn moments(&self, t: f64) -> Vec<Moment> {
+    fn group_of(&self, body: usize) -> &Group {
+        &self.groups[body / LANES]
+    }
+
+    fn samples(&self, t: f64) -> Vec<Sample> {
         self.groups
             .iter()
-            .flat_map(|group| group.moments(t))
+            .flat_map(|group| group.samples(t))
             .collect()
     }
 
@@ -287,13 +352,13 @@ impl<'s> Simulation<'s> {
     }
 }
 
-/// Steps between two recorded states, as a period in steps; 1 for every step.
-fn keeps(scene: &Scene, grid_before: u64, grid_after: u64) -> bool {
-    match scene.record.state {
-        StateRate::EveryStep => true,
-        StateRate::PerSecond(rate) => {
-            schedule::ticks(grid_after, scene.step, rate)
-                > schedule::ticks(grid_before, scene.step, rate)
-        }
+/// Starts event `k` on the group of its body. What lasts is left to [`Group::load`]; an impulse
+/// acts at once.
+fn begin(group: &mut Group, scene: &Scene, k: usize) -> Option<Jump> {
+    let event = &scene.events[k];
+    match event.action {
+        Action::Push { .. } | Action::Torque { .. } => None,
+        Action::Impulse { impulse, point } => Some(group.strike(event.body, impulse, Some(point))),
+        Action::AngularImpulse { impulse } => Some(group.strike(event.body, impulse, None)),
     }
 }

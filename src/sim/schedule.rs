@@ -4,7 +4,7 @@
 //! `t = k h + r`. A step that an event divides is taken in two pieces.
 
 use super::script::Happening;
-use crate::scene::Scene;
+use crate::scene::{Scene, StateRate};
 use crate::trace::Instant;
 
 /// A place on the clock.
@@ -37,7 +37,11 @@ pub enum Mark {
     None,
     /// The derived streams are due.
     Display,
-    Events(Vec<Happening>),
+    Events {
+        happenings: Vec<Happening>,
+        /// Whether the derived streams are due as well.
+        display: bool,
+    },
 }
 
 /// Steps in a stretch at most: what is buffered between two deliveries.
@@ -59,7 +63,7 @@ impl<'s> Schedule<'s> {
         for (time, happening) in super::script::after_start(scene) {
             let at = node(time, scene.step);
             match nodes.last_mut() {
-                Some((last, group)) if same(*last, at) => group.push(happening),
+                Some((last, group)) if close(*last, at, scene.step) => group.push(happening),
                 _ => nodes.push((at, vec![happening])),
             }
         }
@@ -134,34 +138,49 @@ impl<'s> Schedule<'s> {
         };
         self.now = to;
         self.steps += 1;
-        let at_target = !before(to, target);
+        let at_event = self.happenings.peek().is_some_and(|(at, _)| same(*at, to));
         Step {
             from: from.time,
             h: length,
             after: self.now(),
-            keep: at_target || super::keeps(self.scene, old, to.grid),
+            keep: at_event || !before(to, self.end) || self.state_is_due(from, to),
         }
     }
 
     fn mark(&mut self) -> Mark {
         let here = self.now;
-        if let Some((_, happenings)) = self.happenings.next_if(|(at, _)| same(*at, here)) {
-            return Mark::Events(happenings);
-        }
         let rate = self.scene.record.rate;
         let previous = here.grid.saturating_sub(1);
         let due = here.rest == 0.0
             && ticks(here.grid, self.scene.step, rate) > ticks(previous, self.scene.step, rate);
-        if due || !before(here, self.end) {
-            Mark::Display
-        } else {
-            Mark::None
+        let display = due || !before(here, self.end);
+        if let Some((_, happenings)) = self.happenings.next_if(|(at, _)| same(*at, here)) {
+            return Mark::Events {
+                happenings,
+                display,
+            };
         }
+        if display { Mark::Display } else { Mark::None }
+    }
+
+    /// Whether a sampling instant of the state lies in a step.
+    fn state_is_due(&self, from: Node, to: Node) -> bool {
+        let h = self.scene.step;
+        match self.scene.record.state {
+            StateRate::EveryStep => true,
+            StateRate::PerSecond(rate) => ticks(to.grid, h, rate) > ticks(from.grid, h, rate),
+        }
+    }
+
+    /// Sets the clock back to where a stretch was broken off.
+    pub fn stop_after(&mut self, step: &Step) {
+        self.steps = step.after.step;
+        self.now.time = step.after.time;
     }
 }
 
-/// Whether `t` and a grid node are the same: a remainder below this part of a step is rounding
-/// in `t/h` (relative 2⁻⁵³, so a few units of that times the step count), never a step of its own.
+/// A remainder below this part of a step is rounding in `t/h` (relative 2⁻⁵³, so a few units of
+/// that times the step count), never a step of its own.
 fn rounding(steps: f64) -> f64 {
     (4.0 * f64::EPSILON * steps).max(1e-9)
 }
@@ -186,6 +205,12 @@ fn node(time: f64, h: f64) -> Node {
 
 fn before(a: Node, b: Node) -> bool {
     (a.grid, a.rest) < (b.grid, b.rest)
+}
+
+/// The same instant but for rounding.
+fn close(a: Node, b: Node, h: f64) -> bool {
+    let steps = (a.grid as f64 - b.grid as f64) + (a.rest - b.rest) / h;
+    steps.abs() <= rounding(a.grid as f64)
 }
 
 fn same(a: Node, b: Node) -> bool {

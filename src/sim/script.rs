@@ -1,14 +1,22 @@
 //! What happens when, and how the log says it.
 
+use super::Jump;
 use crate::scene::{Action, Event, Scene};
-use crate::trace::{Moment, Note, NoteKind, Subject, short_vector};
-use nalgebra::Vector3;
+use crate::trace::{Note, NoteKind, Sample, Subject, short_vector};
 
 /// The begin or the end of an event, by its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Happening {
     Ends(usize),
     Begins(usize),
+}
+
+impl Happening {
+    /// Index of the event.
+    pub fn event(self) -> usize {
+        let (Self::Ends(k) | Self::Begins(k)) = self;
+        k
+    }
 }
 
 /// The events that begin with the scene.
@@ -33,31 +41,23 @@ pub fn after_start(scene: &Scene) -> Vec<(f64, Happening)> {
     all
 }
 
-pub fn begin_note(
-    event: &Event,
-    subjects: &[Subject],
-    moments: &[Moment],
-    jump: Option<(Vector3<f64>, Vector3<f64>)>,
-) -> Note {
-    let name = &subjects[event.body].name;
-    let moment = &moments[event.body];
-    let (text, kind) = match (event.action, jump) {
-        (_, Some((angular, turn))) => (
+pub fn begin_note(event: &Event, subject: &Subject, sample: &Sample, jump: Option<Jump>) -> Note {
+    let what = format!("{} on {}", noun(&event.action), subject.name);
+    let (text, kind) = match jump {
+        Some(jump) => (
             format!(
-                "{} on {name}: ΔL = {} N·m·s about the {}, Δω = {} rad/s",
-                noun(&event.action),
-                short_vector(angular),
-                subjects[event.body].reference(),
-                short_vector(turn)
+                "{what}: ΔL = {} N·m·s about the {}, Δω = {} rad/s",
+                short_vector(jump.angular_impulse_w),
+                subject.reference(),
+                short_vector(jump.omega_w)
             ),
             NoteKind::Instant,
         ),
-        _ => (
+        None => (
             format!(
-                "{} on {name} begins: τ = {} N·m, α = {} rad/s²",
-                noun(&event.action),
-                short_vector(moment.tau_w),
-                short_vector(moment.alpha_w)
+                "{what} begins: τ = {} N·m, α = {} rad/s²",
+                short_vector(sample.tau_w),
+                short_vector(sample.alpha_w)
             ),
             NoteKind::Begins,
         ),
@@ -69,15 +69,12 @@ pub fn begin_note(
     }
 }
 
-pub fn end_note(event: &Event, subjects: &[Subject], moments: &[Moment]) -> Note {
-    let omega = short_vector(moments[event.body].motion.omega_w);
+pub fn end_note(event: &Event, subject: &Subject, sample: &Sample) -> Note {
+    let omega = short_vector(sample.motion.omega_w);
+    let what = format!("{} on {}", noun(&event.action), subject.name);
     Note {
         body: event.body,
-        text: format!(
-            "{} on {} ends: ω = {omega} rad/s",
-            noun(&event.action),
-            subjects[event.body].name
-        ),
+        text: format!("{what} ends: ω = {omega} rad/s"),
         kind: NoteKind::Ends,
     }
 }

@@ -92,7 +92,7 @@ pub struct PointForce {
 
 /// A body at an instant: its state and what the model says follows.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Moment {
+pub struct Sample {
     pub motion: Motion,
     /// Applied torque about the reference point, world, N·m: everything but the gyroscopic term.
     pub tau_w: Vector3<f64>,
@@ -103,7 +103,7 @@ pub struct Moment {
     pub pushes: Vec<PointForce>,
 }
 
-impl Moment {
+impl Sample {
     /// `R I_b⁻¹ Rᵀ`: inverse inertia about the reference point, world, 1/(kg m²).
     pub fn inverse_inertia_w(&self, subject: &Subject) -> Matrix3<f64> {
         super::quantity::turned(&subject.inverse_inertia_b, self)

@@ -7,8 +7,8 @@ mod instant;
 mod quantity;
 mod streams;
 
-pub use instant::{Instant, Moment, Motion, PointForce, Subject};
-pub use quantity::{QUANTITIES, Quantity, Shape};
+pub use instant::{Instant, Motion, PointForce, Sample, Subject};
+pub use quantity::{Quantity, Shape};
 pub use streams::{STREAMS, Stream, StreamSet};
 
 use nalgebra::Vector3;
@@ -52,8 +52,13 @@ pub trait Sink {
     /// The state, as often as it is wanted.
     fn motions(&mut self, track: &Track<'_>) -> Result<(), SinkError>;
 
-    /// All bodies at one instant, with all that follows from the model there.
-    fn moments(&mut self, at: Instant, moments: &[Moment]) -> Result<(), SinkError>;
+    /// Some bodies at one instant, with all that follows from the model there.
+    fn samples(
+        &mut self,
+        at: Instant,
+        bodies: Range<usize>,
+        samples: &[Sample],
+    ) -> Result<(), SinkError>;
 
     fn note(&mut self, at: Instant, note: &Note) -> Result<(), SinkError>;
 }
@@ -71,10 +76,15 @@ pub fn short(x: f64) -> String {
     }
 }
 
-/// A vector for people: components below 1e-12 of the longest are rounding and read 0.
+/// Numbers that belong together, for people: those below 1e-12 of the largest are rounding and
+/// read 0.
+pub fn short_numbers(numbers: &[f64]) -> Vec<String> {
+    let largest = numbers.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+    let clean = |&x: &f64| if x.abs() <= 1e-12 * largest { 0.0 } else { x };
+    numbers.iter().map(|x| short(clean(x))).collect()
+}
+
+/// A vector for people.
 pub fn short_vector(v: Vector3<f64>) -> String {
-    let noise = 1e-12 * v.amax();
-    let part = |&x: &f64| short(if x.abs() <= noise { 0.0 } else { x });
-    let parts: Vec<String> = v.iter().map(part).collect();
-    format!("({})", parts.join(", "))
+    format!("({})", short_numbers(v.as_slice()).join(", "))
 }

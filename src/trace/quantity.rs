@@ -1,6 +1,7 @@
 //! Every number that a trace can hold, with its unit and frame, and how it is computed.
 
-use super::instant::{Moment, Subject};
+use super::instant::{Sample, Subject};
+use crate::mass::tensor;
 use nalgebra::{Matrix3, Vector3};
 
 /// How many numbers, and what they are.
@@ -39,7 +40,7 @@ pub struct Quantity {
     pub frame: &'static str,
     pub shape: Shape,
     /// Appends the numbers of one body at one instant.
-    pub write: fn(&Subject, &Moment, &mut Vec<f64>),
+    pub write: fn(&Subject, &Sample, &mut Vec<f64>),
 }
 
 macro_rules! quantity {
@@ -191,35 +192,10 @@ quantity!(
     |s, m, out| { out.push(s.energy(&m.motion)) }
 );
 
-/// Every quantity, in the order of the lists.
-pub const QUANTITIES: &[&Quantity] = &[
-    &POSITION,
-    &ORIENTATION,
-    &VELOCITY,
-    &OMEGA,
-    &OMEGA_NORM,
-    &FORCE,
-    &FORCE_POINT,
-    &TORQUE,
-    &TORQUE_NORM,
-    &ALPHA,
-    &ALPHA_NORM,
-    &MOMENTUM,
-    &INERTIA,
-    &INVERSE_INERTIA,
-    &ENERGY,
-];
-
-/// `R I_b Rᵀ`, symmetric bit for bit.
-pub(crate) fn turned(tensor_b: &Matrix3<f64>, moment: &Moment) -> Matrix3<f64> {
-    let r = moment.motion.q_wb.to_rotation_matrix();
-    let mut turned = r.matrix() * tensor_b * r.matrix().transpose();
-    for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-        let mean = 0.5 * (turned[(i, j)] + turned[(j, i)]);
-        turned[(i, j)] = mean;
-        turned[(j, i)] = mean;
-    }
-    turned
+/// `R I_b Rᵀ`.
+pub(crate) fn turned(tensor_b: &Matrix3<f64>, sample: &Sample) -> Matrix3<f64> {
+    let r = sample.motion.q_wb.to_rotation_matrix();
+    tensor::turned(tensor_b, r.matrix())
 }
 
 fn vector(v: Vector3<f64>, out: &mut Vec<f64>) {

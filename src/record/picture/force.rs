@@ -4,13 +4,14 @@ use super::super::RecordError;
 use super::super::columns::{Ends, Times, strips};
 use super::super::look;
 use super::super::rrd::RrdFile;
-use super::Picture;
 use super::vector::{Arrows, Labels};
-use crate::trace::{Instant, Moment, Subject, short};
+use super::{Drawn, Picture};
+use crate::trace::{Instant, Sample, Subject, short};
 use rerun::archetypes::{Arrows3D, LineStrips3D};
 use rerun::components::Radius;
 
 pub struct ForcePicture {
+    drawn: &'static Drawn,
     /// m per N.
     scale: f64,
     times: Times,
@@ -21,8 +22,9 @@ pub struct ForcePicture {
 }
 
 impl ForcePicture {
-    pub fn new(scale: f64) -> Self {
+    pub fn new(drawn: &'static Drawn, scale: f64) -> Self {
         Self {
+            drawn,
             scale,
             times: Times::default(),
             arrows: Arrows::default(),
@@ -36,32 +38,40 @@ impl ForcePicture {
 impl Picture for ForcePicture {
     fn statics(&self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
         let arrows = Arrows3D::update_fields()
-            .with_colors([look::FORCE])
+            .with_colors([self.drawn.colour])
             .with_radii([Radius::new_ui_points(look::BOLD)]);
         let arms = LineStrips3D::update_fields()
-            .with_colors([look::FORCE])
+            .with_colors([self.drawn.colour])
             .with_radii([Radius::new_ui_points(look::THIN)]);
         let path = format!("/force/{}", subject.name);
         file.statics(format!("{path}/arm"), &[&arms])?;
-        file.statics(format!("{path}/label"), &[&Labels::statics(look::FORCE)])?;
+        file.statics(
+            format!("{path}/label"),
+            &[&Labels::statics(self.drawn.colour)],
+        )?;
         file.statics(path, &[&arrows])
     }
 
-    fn row(&mut self, at: Instant, subject: &Subject, moment: &Moment) {
-        let reference = moment.reference_w(subject);
+    fn row(&mut self, at: Instant, subject: &Subject, sample: &Sample) {
+        let reference = sample.reference_w(subject);
         self.times.push(at);
-        for push in &moment.pushes {
+        for push in &sample.pushes {
             let arrow = push.force_w * self.scale;
             self.arrows.push(push.point_w - arrow, arrow);
-            let label = format!("F {} N", short(push.force_w.norm()));
+            let label = format!(
+                "{} {} {}",
+                self.drawn.symbol,
+                short(push.force_w.norm()),
+                self.drawn.unit
+            );
             self.labels.push(push.point_w - arrow * 1.12, label);
             for end in [reference, push.point_w] {
                 self.arms.extend(end.iter().map(|&x| x as f32));
             }
             self.arm_points.push(2);
         }
-        self.arrows.ends.push(moment.pushes.len());
-        self.labels.end_row(moment.pushes.len());
+        self.arrows.ends.push(sample.pushes.len());
+        self.labels.end_row(sample.pushes.len());
     }
 
     fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {

@@ -9,8 +9,8 @@ use super::super::RecordError;
 use super::super::columns::{Column, Ends, Times, strips, texts, vectors};
 use super::super::look::{self, Colour};
 use super::super::rrd::RrdFile;
-use super::Picture;
-use crate::trace::{Instant, Moment, Subject, short};
+use super::{Drawn, Picture};
+use crate::trace::{Instant, Sample, Subject, short};
 use nalgebra::Vector3;
 use rerun::archetypes::{Arrows3D, CoordinateFrame, LineStrips3D, Points3D, Transform3D};
 use rerun::components::Radius;
@@ -22,13 +22,10 @@ const RING_ARC: f64 = 1.75 * std::f64::consts::PI;
 const RING_PIECES: usize = 28;
 
 pub struct VectorPicture {
-    entity: &'static str,
-    symbol: &'static str,
-    unit: &'static str,
+    drawn: &'static Drawn,
     /// m per unit.
     scale: f64,
-    colour: Colour,
-    value: fn(&Subject, &Moment) -> Vector3<f64>,
+    value: fn(&Subject, &Sample) -> Vector3<f64>,
     times: Times,
     arrows: Arrows,
     labels: Labels,
@@ -113,19 +110,13 @@ impl Arrows {
 
 impl VectorPicture {
     pub fn new(
-        entity: &'static str,
-        symbol: &'static str,
-        unit: &'static str,
+        drawn: &'static Drawn,
         scale: f64,
-        colour: Colour,
-        value: fn(&Subject, &Moment) -> Vector3<f64>,
+        value: fn(&Subject, &Sample) -> Vector3<f64>,
     ) -> Self {
         Self {
-            entity,
-            symbol,
-            unit,
+            drawn,
             scale,
-            colour,
             value,
             times: Times::default(),
             arrows: Arrows::default(),
@@ -141,12 +132,12 @@ impl VectorPicture {
     }
 
     fn path(&self, subject: &Subject) -> String {
-        format!("/{}/{}", self.entity, subject.name)
+        format!("/{}/{}", self.drawn.stream, subject.name)
     }
 
     /// The frame of the data: at the reference point, without the body's turn, in the unit.
     fn frame(&self, subject: &Subject) -> String {
-        format!("{}@{}", self.entity, subject.name)
+        format!("{}@{}", self.drawn.stream, subject.name)
     }
 
     /// Where along the arrow its label stands: at the tip of a torque, beyond that of the longer others.
@@ -201,36 +192,41 @@ impl Picture for VectorPicture {
             .with_child_frame(frame.as_str())
             .with_parent_frame(parent.as_str());
         file.statics(
-            format!("/frames/{}/{}", self.entity, subject.name),
+            format!("/frames/{}/{}", self.drawn.stream, subject.name),
             &[&scaling],
         )?;
         let arrows = Arrows3D::update_fields()
-            .with_colors([self.colour])
+            .with_colors([self.drawn.colour])
             .with_radii([self.radius()]);
         let here = CoordinateFrame::new(frame);
         let path = self.path(subject);
         file.statics(path.as_str(), &[&here, &arrows])?;
         file.statics(
             format!("{path}/label"),
-            &[&here, &Labels::statics(self.colour)],
+            &[&here, &Labels::statics(self.drawn.colour)],
         )?;
         if self.turns.is_some() {
             let ring = LineStrips3D::update_fields()
-                .with_colors([self.colour])
+                .with_colors([self.drawn.colour])
                 .with_radii([self.radius()]);
             file.statics(format!("{path}/turn"), &[&here, &ring, &arrows])?;
         }
         Ok(())
     }
 
-    fn row(&mut self, at: Instant, subject: &Subject, moment: &Moment) {
-        let value = (self.value)(subject, moment);
+    fn row(&mut self, at: Instant, subject: &Subject, sample: &Sample) {
+        let value = (self.value)(subject, sample);
         let length = value.norm();
         let shown = length.is_finite() && length > 0.0;
         self.times.push(at);
         if shown {
             self.arrows.push(Vector3::zeros(), value);
-            let label = format!("{} {} {}", self.symbol, short(length), self.unit);
+            let label = format!(
+                "{} {} {}",
+                self.drawn.symbol,
+                short(length),
+                self.drawn.unit
+            );
             self.labels.push(value * self.label_place(), label);
         }
         self.arrows.ends.push(usize::from(shown));

@@ -1,0 +1,46 @@
+//! What a recording says of itself, besides its trace.
+
+use super::scale::Scales;
+use crate::scene::{Action, Scene};
+use crate::sim::Simulation;
+use crate::trace::StreamSet;
+
+/// Title, notes and how it opens.
+pub struct Heading {
+    pub title: String,
+    /// Markdown: what the scene shows and what to look for.
+    pub notes: String,
+    /// Tells recordings apart in a viewer; the same for the same scene.
+    pub id: String,
+    /// s.
+    pub duration: f64,
+    /// Of the derived streams, 1/s.
+    pub rate: f64,
+    /// Of those that last, s.
+    pub shortest_event: Option<f64>,
+    pub has_pushes: bool,
+    pub streams: StreamSet,
+    pub(super) scales: Scales,
+}
+
+impl Heading {
+    pub fn of(scene: &Scene, simulation: &Simulation<'_>) -> Self {
+        let lasting = scene
+            .events
+            .iter()
+            .map(|event| event.action.lasts())
+            .filter(|&s| s > 0.0);
+        let is_push = |action: &Action| matches!(action, Action::Push { .. });
+        Self {
+            title: scene.title.clone(),
+            notes: scene.notes.clone(),
+            id: format!("{}-{:016x}", scene.name, scene.fingerprint),
+            duration: scene.duration,
+            rate: scene.record.rate,
+            shortest_event: lasting.min_by(f64::total_cmp),
+            has_pushes: scene.events.iter().any(|event| is_push(&event.action)),
+            streams: scene.record.streams,
+            scales: Scales::new(simulation.subjects(), &simulation.expected()),
+        }
+    }
+}
