@@ -138,6 +138,27 @@ fn the_order_test_can_fail() {
     }
 }
 
+/// Step counts at which a method of that order is well above rounding and well below 1.
+fn counts(order: u32) -> &'static [u32] {
+    match order {
+        1 => &[4_000, 8_000, 16_000, 32_000],
+        2 | 3 => &[400, 800, 1_600, 3_200],
+        _ => &[100, 200, 400, 800],
+    }
+}
+
+#[track_caller]
+fn has_order(method: &dyn Method, what: &str, error: impl Fn(u32) -> f64) {
+    let info = method.info();
+    let seen = slope(counts(info.order), error);
+    let declared = f64::from(info.order);
+    assert!(
+        (seen - declared).abs() < 0.15,
+        "{}: {what} has slope {seen}, declared {declared}",
+        info.name
+    );
+}
+
 #[test]
 fn a_damped_free_body_is_the_free_one_at_a_slower_time() {
     // τ = -c I ω: L decays as e^{-ct} and the motion is the undamped one at s = (1 - e^{-ct})/c.
@@ -147,12 +168,94 @@ fn a_damped_free_body_is_the_free_one_at_a_slower_time() {
     let mut load = gyroscopic();
     let rates = vec![Some(c), Some(c), None, None];
     effect("damping", Value::Table(rates), &mut load);
-    let rk4 = find("rk4").unwrap();
-    let undamped = advance(rk4, &gyroscopic(), &bodies, slow, 20_000);
-    let seen = slope(&[100, 200, 400, 800], |n| {
-        angle(advance(rk4, &load, &bodies, t, n).q_wp, undamped.q_wp)
-    });
-    assert!((seen - 4.0).abs() < 0.15, "slope {seen}");
+    // rk4 itself is proved on the undamped motion against outside digits.
+    let undamped = advance(find("rk4").unwrap(), &gyroscopic(), &bodies, slow, 20_000);
+    for method in METHODS {
+        has_order(*method, "damped attitude", |n| {
+            angle(advance(*method, &load, &bodies, t, n).q_wp, undamped.q_wp)
+        });
+    }
+}
+
+/// `m x'' = m (f cos wt - k x - d x')` and, about the fixed axis y, `I ω' = I (a cos bt - c ω)`:
+/// forces and torques that depend on time, place and velocities, with a closed form.
+#[derive(Debug)]
+struct Driven;
+
+const F: Vector3<f64> = Vector3::new(1.0, -0.5, 0.25);
+const X0: Vector3<f64> = Vector3::new(0.3, 0.2, -0.4);
+const V0: Vector3<f64> = Vector3::new(-0.1, 0.5, 0.3);
+const OMEGA0: f64 = 0.4;
+const K: f64 = 2.0;
+const D: f64 = 0.3;
+const W: f64 = 1.3;
+const A: f64 = 1.5;
+const B: f64 = 1.7;
+const C: f64 = 0.6;
+
+impl crate::effect::Effect for Driven {
+    fn add(
+        &self,
+        t: f64,
+        inertial: &InertialBlock,
+        state: &StateBlock,
+        wrench: &mut crate::effect::WrenchBlock,
+    ) {
+        let (body, s) = (inertial.get(0), state.get(0));
+        let force = (F * (W * t).cos() - s.x_w * K - s.v_w * D) * body.mass;
+        let torque = body.moments.y * (A * (B * t).cos() - C * s.omega_w.y);
+        wrench.add(0, force, Vector3::y() * torque);
+    }
+}
+
+impl Driven {
+    /// x and v: the steady oscillation and what decays.
+    fn place(t: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let denominator = (K - W * W).powi(2) + (D * W).powi(2);
+        let (p, q) = (F * ((K - W * W) / denominator), F * (D * W / denominator));
+        let rate = (K - 0.25 * D * D).sqrt();
+        let c = X0 - p;
+        let s = (V0 + c * (0.5 * D) - q * W) / rate;
+        let (decay, (sin, cos)) = ((-0.5 * D * t).exp(), (rate * t).sin_cos());
+        let ((ws, wc), free) = ((W * t).sin_cos(), (c * cos + s * sin) * decay);
+        let x = p * wc + q * ws + free;
+        let v = (q * wc - p * ws) * W - free * (0.5 * D) + (s * cos - c * sin) * (rate * decay);
+        (x, v)
+    }
+
+    /// ω and the angle turned about y.
+    fn turn(t: f64) -> (f64, f64) {
+        let (p, q) = (A * C / (C * C + B * B), A * B / (C * C + B * B));
+        let ((sin, cos), decay) = ((B * t).sin_cos(), (-C * t).exp());
+        let omega = p * cos + q * sin + (OMEGA0 - p) * decay;
+        let angle = (p * sin + q * (1.0 - cos)) / B + (OMEGA0 - p) * (1.0 - decay) / C;
+        (omega, angle)
+    }
+}
+
+#[test]
+fn every_method_has_its_order_in_place_and_velocities_under_a_driven_load() {
+    let start = State {
+        x_w: X0,
+        v_w: V0,
+        ..spinning(UnitQuaternion::identity(), Vector3::y() * OMEGA0)
+    };
+    let bodies = block(Vector3::new(0.3, 0.5, 0.6), start);
+    let mut load = Load::default();
+    load.push(Arc::new(Driven));
+    let t = 4.0;
+    let (x, v) = Driven::place(t);
+    let (omega, turned) = Driven::turn(t);
+    let q = axis_angle(Unit::new_unchecked(Vector3::y()), turned).into_inner();
+    for method in METHODS {
+        let end = |n| advance(*method, &load, &bodies, t, n);
+        has_order(*method, "place", |n| (end(n).x_w - x).norm());
+        has_order(*method, "velocity", |n| (end(n).v_w - v).norm());
+        has_order(*method, "angular velocity", |n| {
+            (end(n).omega_w.y - omega).abs()
+        });
+        has_order(*method, "attitude", |n| angle(end(n).q_wp, q));
+    }
 }
 
 #[test]
@@ -204,7 +307,9 @@ fn constant_torque_about_a_fixed_axis() {
         let bound = match method.info().order {
             // First order: ω h / 2 too far a step, ½ α h t in all = 1.05e-3 rad.
             1 => 1.1e-3,
-            // q's error constant (ω h)⁵/7680 a step (h = 1e-3, ω ≤ 2.1): below rounding.
+            // ω³ h² / 24 a second at most, over 3 s: 1.2e-6.
+            2 | 3 => 1.2e-6,
+            // Of the size of (ω h)⁴ = 2e-11 at most, times an error constant of 1/7680.
             _ => 1e-12,
         };
         assert!(
