@@ -77,14 +77,14 @@ fn a_scene_that_does_not_exist() {
 fn an_output_that_cannot_be_written_is_told_before_the_simulation() {
     let folder = tempfile::tempdir().unwrap();
     // 1e12 steps: it would not return if it began.
-    let scene = "duration = 1e9\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 1, 1]\n";
+    let scene = "duration = 1e9\n[record]\nstate = \"every\"\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 1, 1]\n";
     std::fs::write(folder.path().join("long.toml"), scene).unwrap();
     let output = torquescope(folder.path())
         .args(["run", "long.toml", "--out", "nowhere/at/all.rrd"])
         .timeout(std::time::Duration::from_secs(20))
         .output()
         .unwrap();
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(2));
     assert_eq!(
         text(&output.stderr),
         "nowhere/at/all.rrd: cannot be written: No such file or directory (os error 2); choose another file or folder for the recording\n"
@@ -125,7 +125,7 @@ fn a_file_that_is_no_recording_is_not_overwritten() {
         .args(["run", "s.toml", "--out", "s.toml"])
         .output()
         .unwrap();
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(2));
     assert_eq!(
         text(&output.stderr),
         "s.toml exists and is no recording; choose another name, so that it is not lost\n"
@@ -143,6 +143,94 @@ fn a_file_that_is_no_recording_is_not_overwritten() {
     }
 }
 
+/// /dev/full takes nothing: the first flush of a run that is long enough fails in its midst.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_that_fills_up_is_told_once_and_without_a_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "duration = 60.0\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 1, 1]\nangular_velocity = [0, 1, 0]\n";
+    std::fs::write(folder.path().join("s.toml"), scene).unwrap();
+    let output = torquescope(folder.path())
+        .args(["run", "s.toml", "--out", "/dev/full"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    assert_eq!(
+        text(&output.stderr),
+        "/dev/full: writing stopped: Failed to write: No space left on device (os error 28); make room there, or record fewer streams or less often\n"
+    );
+}
+
+/// Reads one answer of a served page.
+fn ask(address: &str, request: &str) -> String {
+    use std::io::{Read as _, Write as _};
+    let mut stream = std::net::TcpStream::connect(address).unwrap();
+    stream.write_all(request.as_bytes()).unwrap();
+    stream
+        .set_read_timeout(Some(std::time::Duration::from_secs(20)))
+        .unwrap();
+    let mut answer = Vec::new();
+    stream.read_to_end(&mut answer).unwrap();
+    String::from_utf8_lossy(&answer).into_owned()
+}
+
+#[test]
+fn the_carried_viewer_is_served_to_this_machine_alone() {
+    use std::io::BufRead as _;
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "duration = 0.01\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 1, 1]\n";
+    std::fs::write(folder.path().join("s.toml"), scene).unwrap();
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin!("torquescope"))
+        .current_dir(folder.path())
+        .args(["run", "s.toml", "--json", "--view", "--no-browser"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    // With --json the address goes to stderr: stdout is one object.
+    let mut line = String::new();
+    std::io::BufReader::new(child.stderr.take().unwrap())
+        .read_line(&mut line)
+        .unwrap();
+    let address = line
+        .split("http://")
+        .nth(1)
+        .unwrap()
+        .split_whitespace()
+        .next()
+        .unwrap()
+        .to_owned();
+    let get = |path: &str, host: &str| {
+        ask(
+            &address,
+            &format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n"),
+        )
+    };
+    assert!(address.starts_with("127.0.0.1:"));
+    assert!(get("/", &address).starts_with("HTTP/1.1 200") && get("/", &address).contains("s.rrd"));
+    assert!(get("/recording.rrd", &address).contains("RRF2"));
+    assert!(get("/re_viewer.js", &address).contains("WebHandle"));
+    assert!(get("/../Cargo.toml", &address).starts_with("HTTP/1.1 404"));
+    assert!(get("/", "evil.example").starts_with("HTTP/1.1 403"));
+    // What a request announces is not read, and does not bring the server down.
+    let huge =
+        format!("POST / HTTP/1.1\r\nHost: {address}\r\nContent-Length: 99999999999999\r\n\r\n");
+    assert!(ask(&address, &huge).starts_with("HTTP/1.1 405"));
+    assert!(get("/", &address).starts_with("HTTP/1.1 200"));
+    // The port is taken now.
+    let port = address.rsplit(':').next().unwrap();
+    let output = torquescope(folder.path())
+        .args(["view", "s.rrd", "--web", "--no-browser", "--port", port])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        text(&output.stderr).starts_with(&format!("port {port} on 127.0.0.1 cannot be served"))
+    );
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
 #[test]
 fn json_has_every_digit() {
     let folder = tempfile::tempdir().unwrap();
@@ -155,7 +243,7 @@ fn json_has_every_digit() {
         .unwrap();
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(report["method"], "semi-implicit");
-    assert_eq!(report["steps"], 2000);
+    assert_eq!(report["steps"], 1000);
     assert_eq!(report["bodies"][1]["name"], "base-A");
     let omega = report["bodies"][1]["angular_velocity"][2].as_f64().unwrap();
     // 100 additions of 40/1000, rounded.

@@ -282,6 +282,46 @@ fn time_does_not_drift_and_a_rate_is_kept() {
 }
 
 #[test]
+fn a_step_that_is_a_truncated_decimal_loses_no_sample() {
+    // 1/120, 1/240 and so on with some digits cut off: sampling instants fall a rounding beside
+    // the grid, now on one side, now on the other.
+    let cases: [(f64, f64, f64); 6] = [
+        (0.008_333_333_333_33, 60.0, 60.0),
+        (0.004_166_666_666_6, 60.0, 60.0),
+        (0.001_041_666_666_66, 60.0, 10.0),
+        (0.016_666_666_666_6, 30.0, 60.0),
+        (0.001, 1000.0, 1.0),
+        (0.01, 1e9, 1.0),
+    ];
+    for (step, rate, duration) in cases {
+        let source = format!(
+            "duration = {duration}\n[stepping]\nstep = {step}\n[record]\nrate = {rate}\nstate = 1\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 1, 1]\n"
+        );
+        let (_, outcome, memory) = run(&Scene::parse("inline", "inline", &source).unwrap());
+        // A sample an instant, but no more than a step each; the start; and the end, which a
+        // truncated step may leave a step of its own.
+        let wanted = (rate * duration).min((duration / step).round());
+        let seen = memory.samples.len() as f64 - 1.0;
+        assert!(
+            (wanted..=wanted + 1.0).contains(&seen),
+            "{step}: {seen} of {wanted}"
+        );
+        let gaps = memory.samples.windows(2).map(|w| w[1].0.time - w[0].0.time);
+        let widest = gaps.fold(0.0, f64::max);
+        assert!(
+            widest < 1.0 / rate + 1.001 * step,
+            "{step}: a gap of {widest} s"
+        );
+        let states = memory.states.len() as u64;
+        assert!(
+            (duration as u64 + 1..=duration as u64 + 2).contains(&states),
+            "{step}: {states}"
+        );
+        assert!(outcome.steps > 0);
+    }
+}
+
+#[test]
 fn events_that_a_rounding_parts_are_one_instant() {
     let source = r#"
         duration = 0.6

@@ -33,10 +33,12 @@ impl State {
         rotate(-self.q_wp.imag(), self.q_wp.w, v_w)
     }
 
-    /// True where every component is finite.
+    /// True where every component is finite and the attitude is one.
     pub fn is_finite(&self) -> bool {
         let vectors = [self.x_w, self.v_w, self.omega_w];
         vectors.iter().flatten().all(|c| c.is_finite())
+            // A length that overflowed leaves zeros, which are finite and no attitude.
+            && self.q_wp.norm_squared() > 0.5
             && self.q_wp.coords.iter().all(|c| c.is_finite())
     }
 }

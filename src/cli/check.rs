@@ -18,7 +18,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for path in &arguments.scenes {
         match Scene::load(path) {
             Ok(scene) => print::out(&format!(
-                "{}: right; {} bodies, {} events, {} s by {} in steps of {} s",
+                "{}: ok; bodies: {}, events: {}; {} s by {} in steps of {} s",
                 path.display(),
                 scene.bodies.len(),
                 scene.events.len(),
@@ -33,7 +33,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         return Ok(());
     };
     for error in wrong {
-        eprintln!("{error}");
+        print::err(&error.to_string());
     }
     Err(last.into())
 }

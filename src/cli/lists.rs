@@ -17,7 +17,7 @@ pub struct Arguments {
 /// Prints rows as a table or as a JSON list of objects with the same keys.
 fn list(arguments: &Arguments, header: &[&str], rows: Vec<Vec<String>>) -> anyhow::Result<()> {
     if !arguments.json {
-        return print::out(&print::table(header, rows));
+        return print::out(&print::wrapped(header, rows));
     }
     let object = |row: Vec<String>| {
         let pairs = header.iter().zip(row);

@@ -10,6 +10,9 @@ mod run;
 mod scenes;
 mod view;
 
+use crate::live::page::PageError;
+use crate::record::RecordError;
+use crate::scene::SceneError;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
@@ -60,7 +63,7 @@ pub fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("{error:#}");
+            print::err(&format!("{error:#}"));
             ExitCode::from(code(&error))
         }
     }
@@ -72,6 +75,8 @@ pub fn main() -> ExitCode {
 struct Wrong(String);
 
 fn code(error: &anyhow::Error) -> u8 {
-    let input = error.is::<crate::scene::SceneError>() || error.is::<Wrong>();
-    if input { 2 } else { 1 }
+    let record = error.downcast_ref::<RecordError>();
+    let nowhere = record.is_some_and(|error| !matches!(error, RecordError::Write { .. }));
+    let input = error.is::<SceneError>() || error.is::<Wrong>() || error.is::<PageError>();
+    if input || nowhere { 2 } else { 1 }
 }

@@ -16,16 +16,34 @@ pub fn out(text: &str) -> anyhow::Result<()> {
     }
 }
 
+/// Prints a line to stderr; where there is nobody to read it, that is no failure.
+pub fn err(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
 pub fn json(value: &impl serde::Serialize) -> anyhow::Result<()> {
     out(&serde_json::to_string_pretty(value)?)
 }
 
 /// A table framed by lines.
 pub fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
+    framed(header, rows, ContentArrangement::Disabled)
+}
+
+/// A table of texts, wrapped to be read.
+pub fn wrapped(header: &[&str], rows: Vec<Vec<String>>) -> String {
+    framed(header, rows, ContentArrangement::Dynamic)
+}
+
+/// Columns of characters that a text is wrapped to.
+const WIDTH: u16 = 110;
+
+fn framed(header: &[&str], rows: Vec<Vec<String>>, arrangement: ContentArrangement) -> String {
     let mut table = Table::new();
     table
         .load_preset(presets::UTF8_BORDERS_ONLY)
-        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_content_arrangement(arrangement)
+        .set_width(WIDTH)
         .set_header(header.to_vec());
     for row in rows {
         table.add_row(row);

@@ -2,9 +2,9 @@
 
 use super::{Wrong, print, view};
 use crate::record::{Heading, Recorder, Summary};
-use crate::scene::{Action, Scene};
+use crate::scene::{Action, Event, Scene};
 use crate::sim::{Blow, Outcome, SimError, Simulation};
-use crate::trace::{Sample, Subject, short, short_vector};
+use crate::trace::{Sample, Subject, short, short_numbers, short_vector};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -36,29 +36,32 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.rrd", scene.name)),
     };
+    let page = match arguments.view {
+        true => Some(view::bind(&path, &arguments.serve)?),
+        false => None,
+    };
     let simulation = Simulation::new(&scene);
     let subjects = simulation.subjects().to_vec();
     let heading = Heading::of(&scene, &simulation);
     let mut recorder = Recorder::create(&path, &heading, &subjects)?;
     let (outcome, done) = simulation.run(&mut recorder);
+    if let Err(SimError::Sink(error)) = done {
+        // The file itself failed: nothing more can be written to it.
+        return Err(error.into());
+    }
     // Whatever the run came to, the file is closed whole and what there is of it is told.
-    let summary = match (recorder.finish(), &done) {
-        (Ok(summary), _) => summary,
-        // The file failed first; closing it has nothing to add.
-        (Err(_), Err(SimError::Sink(_))) => return Ok(done?),
-        (Err(error), _) => return Err(error.into()),
-    };
+    let summary = recorder.finish()?;
     if arguments.json {
         let report = Report::new(&scene, &subjects, &outcome, &summary, done.as_ref().err());
         print::json(&report)?;
     } else {
         print::out(&tables(&scene, &subjects, &outcome, &summary, done.is_ok()))?;
     }
-    if arguments.view {
+    if let Some(page) = page {
         if let Err(error) = &done {
-            eprintln!("{error}");
+            print::err(&error.to_string());
         }
-        view::serve(&path, &arguments.serve, arguments.json)?;
+        view::serve(&page, &arguments.serve, arguments.json)?;
     }
     Ok(done?)
 }
@@ -71,7 +74,7 @@ fn tables(
     whole: bool,
 ) -> String {
     let mut text = format!(
-        "{}\nmethod {}, step {} s, {} steps, {} bodies\n",
+        "{}\nmethod {}, step {} s; steps: {}, bodies: {}\n",
         scene.title,
         scene.method.info().name,
         scene.step,
@@ -79,14 +82,14 @@ fn tables(
         subjects.len()
     );
     if !outcome.blows.is_empty() {
-        text += "\nEach blow as it strikes (world axes; torque and inertia about the pivot or the centre of mass)\n";
+        text += "\nEach event as it begins (world axes; torque and inertia about the pivot, or else the centre of mass)\n";
         let header = [
             "t (s)",
             "body",
-            "about its",
-            "torque τ (N·m)",
+            "event",
+            "its torque τ (N·m)",
             "inverse inertia I⁻¹ (1/(kg m²))",
-            "angular acceleration α (rad/s²)",
+            "the body's α (rad/s²)",
         ];
         let rows = outcome
             .blows
@@ -103,9 +106,10 @@ fn tables(
     let header = [
         "body",
         "position (m)",
+        "velocity (m/s)",
         "orientation (x, y, z, w)",
         "angular velocity ω (rad/s)",
-        "energy (J)",
+        "kinetic energy (J)",
     ];
     let rows = subjects
         .iter()
@@ -127,10 +131,7 @@ fn blow_row(scene: &Scene, subjects: &[Subject], blow: &Blow) -> Vec<String> {
     let event = &scene.events[blow.event];
     let subject = &subjects[event.body];
     let (torque, response) = match blow.jump {
-        None => (
-            short_vector(blow.sample.tau_w),
-            short_vector(blow.sample.alpha_w),
-        ),
+        None => (short_vector(blow.tau_w), short_vector(blow.sample.alpha_w)),
         Some(jump) => (
             format!("{} N·m·s", short_vector(jump.angular_impulse_w)),
             format!("Δω {} rad/s", short_vector(jump.omega_w)),
@@ -141,28 +142,41 @@ fn blow_row(scene: &Scene, subjects: &[Subject], blow: &Blow) -> Vec<String> {
         .map(|i| inverse.row(i).transpose())
         .map(|row| short_vector(nalgebra::Vector3::new(row[0], row[1], row[2])))
         .collect();
-    let what = match event.action {
-        Action::Push { .. } => subject.name.clone(),
-        Action::Torque { .. } => format!("{} (torque)", subject.name),
-        Action::Impulse { .. } => format!("{} (impulse)", subject.name),
-        Action::AngularImpulse { .. } => format!("{} (angular impulse)", subject.name),
-    };
     vec![
         short(blow.at.time),
-        what,
-        subject.reference().to_owned(),
+        subject.name.clone(),
+        what(event, blow),
         torque,
         rows.join("\n"),
         response,
     ]
 }
 
+/// The event in words: the force and where it pushed, in the world.
+fn what(event: &Event, blow: &Blow) -> String {
+    let lasts = short(event.action.lasts());
+    match event.action {
+        Action::Push { .. } => match blow.sample.pushes.last() {
+            Some(push) => format!(
+                "push for {lasts} s\nF {} N\nat {} m",
+                short_vector(push.force_w),
+                short_vector(push.point_w)
+            ),
+            None => format!("push for {lasts} s"),
+        },
+        Action::Torque { .. } => format!("torque for {lasts} s"),
+        Action::Impulse { .. } => "impulse".to_owned(),
+        Action::AngularImpulse { .. } => "angular impulse".to_owned(),
+    }
+}
+
 fn end_row(subject: &Subject, sample: &Sample) -> Vec<String> {
     let motion = &sample.motion;
-    let q: Vec<String> = motion.q_wb.coords.iter().map(|&x| short(x)).collect();
+    let q = short_numbers(motion.q_wb.coords.as_slice());
     vec![
         subject.name.clone(),
         short_vector(motion.position_w),
+        short_vector(motion.velocity_w),
         format!("({})", q.join(", ")),
         short_vector(motion.omega_w),
         short(subject.energy(motion)),
@@ -190,7 +204,10 @@ struct Report<'a> {
 struct BlowReport<'a> {
     time: f64,
     body: &'a str,
+    /// Of everything that acts on the body just after.
     torque: [f64; 3],
+    /// Of this event alone.
+    own_torque: [f64; 3],
     inverse_inertia: [[f64; 3]; 3],
     angular_acceleration: [f64; 3],
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -233,6 +250,7 @@ impl<'a> Report<'a> {
                 time: blow.at.time,
                 body: &subject.name,
                 torque: blow.sample.tau_w.into(),
+                own_torque: blow.tau_w.into(),
                 inverse_inertia: blow.sample.inverse_inertia_w(subject).into(),
                 angular_acceleration: blow.sample.alpha_w.into(),
                 angular_impulse: blow.jump.map(|jump| jump.angular_impulse_w.into()),

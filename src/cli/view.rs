@@ -1,7 +1,7 @@
 //! `view FILE`: open a recording, in a native Rerun of the same version or in the carried viewer.
 
 use super::{Wrong, print};
-use crate::live::page;
+use crate::live::page::Page;
 use crate::record::{Assets, MAGIC, RERUN_VERSION, native_version_line};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -55,22 +55,33 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         );
         return Ok(());
     }
-    serve(&arguments.file, &arguments.serve, false)
+    serve(
+        &bind(&arguments.file, &arguments.serve)?,
+        &arguments.serve,
+        false,
+    )
+}
+
+/// Takes the port, before anything long is begun.
+pub fn bind(file: &Path, serving: &Serving) -> anyhow::Result<Page> {
+    Ok(Page::bind(serving.port, file, Assets::load()?)?)
 }
 
 /// Serves a recording with the carried viewer until the program is stopped. The address goes to
 /// stderr where stdout is taken.
-pub fn serve(file: &Path, serving: &Serving, stdout_taken: bool) -> anyhow::Result<()> {
-    let page = page::Page::bind(serving.port, file, Assets::load()?)?;
+pub fn serve(page: &Page, serving: &Serving, stdout_taken: bool) -> anyhow::Result<()> {
     let address = page.address();
-    let line = format!("{} is at {address}  (Ctrl-C stops)", file.display());
+    let line = format!(
+        "{} is at {address}  (Ctrl-C stops)",
+        page.recording().display()
+    );
     if stdout_taken {
-        eprintln!("{line}");
+        print::err(&line);
     } else {
         print::out(&line)?;
     }
     if !serving.no_browser && has_screen() && webbrowser::open(&address).is_err() {
-        eprintln!("no browser opened by itself; open the address above in one");
+        print::err("no browser opened by itself; open the address above in one");
     }
     page.serve();
     Ok(())

@@ -2,7 +2,7 @@
 //!
 //! Over a step h the factor is `e^{-c h}`: from 0 to 1 whatever c h is, so it never turns a
 //! velocity round. The tutorial's form, a factor per frame, is the rate `c = -ln(factor)/h` at
-//! the scene's step h; on a whole step its factor is applied as it was written.
+//! the scene's step h; a method that damps once a step applies its factor as it was written.
 
 use super::{Argument, Called, EffectKind, Value};
 

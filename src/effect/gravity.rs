@@ -15,9 +15,7 @@ pub const KIND: EffectKind = EffectKind {
     equation: "F = m g at the centre of mass",
     about: "uniform gravity on every body; about a pivot it turns as (R c) × m g",
     make: |value, _| match value {
-        Value::Vector(g) if g.norm_squared() > 0.0 => {
-            Ok(Called::Load(Arc::new(Gravity { g_w: *g })))
-        }
+        Value::Vector(g) if g.amax() > 0.0 => Ok(Called::Load(Arc::new(Gravity { g_w: *g }))),
         _ => Ok(Called::Off),
     },
 };

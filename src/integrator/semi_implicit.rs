@@ -1,4 +1,4 @@
-//! The tutorial's step, semi-implicit (symplectic) Euler, as corrected:
+//! The tutorial's step, semi-implicit Euler, as corrected:
 //!
 //! ```text
 //! α = I_w⁻¹ τ(t, state)      ω += α h      q += ½ h (ω, 0) q, normalised      ω *= e^{-c h}

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 /// Why mass properties belong to no rigid body.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum UnphysicalMass {
-    #[error("a mass of {0} kg is not above zero and finite")]
+    #[error("a mass of {0:e} kg is not above zero, finite and within 1e-150 to 1e150")]
     Mass(f64),
     #[error(transparent)]
     Inertia(#[from] Unphysical),
@@ -30,7 +30,7 @@ impl MassProperties {
         inertia_c: Matrix3<f64>,
         immovable: [bool; 3],
     ) -> Result<Self, UnphysicalMass> {
-        if !(mass.is_finite() && mass > 0.0) {
+        if !(1e-150..=1e150).contains(&mass) {
             return Err(UnphysicalMass::Mass(mass));
         }
         tensor::check_physical(&inertia_c)?;
@@ -50,9 +50,23 @@ impl MassProperties {
         }
     }
 
+    /// Whether the body can be held at a point (body axes, from the centre of mass, m): its inertia
+    /// about it must stay within what an f64 computes with.
+    pub fn check_about(&self, point_b: Vector3<f64>) -> Result<(), Unphysical> {
+        match self.mass {
+            Some(_) => tensor::check_physical(&self.inertia_about(point_b)),
+            None => Ok(()),
+        }
+    }
+
     /// kg; `None` is infinite.
     pub fn mass(&self) -> Option<f64> {
         self.mass
+    }
+
+    /// The body axes about which nothing turns it.
+    pub fn immovable(&self) -> [bool; 3] {
+        self.immovable
     }
 
     pub fn is_movable_about_every_axis(&self) -> bool {

@@ -19,7 +19,7 @@ pub fn turned(inertia: &Matrix3<f64>, r: &Matrix3<f64>) -> Matrix3<f64> {
 /// The inverse tensor of a body that some of its own axes hold: zero rows and columns for those,
 /// the inverse of the remaining block for the others.
 ///
-/// For a held axis n this is the limit of adding `k n nᵀ` to the tensor as k → ∞.
+/// For a held axis n this is the limit of the inverse as `k n nᵀ` is added to the tensor, k → ∞.
 pub fn inverse_with_immovable(inertia: &Matrix3<f64>, immovable: [bool; 3]) -> Matrix3<f64> {
     let free: Vec<usize> = (0..3).filter(|&i| !immovable[i]).collect();
     let mut inverse = Matrix3::zeros();
@@ -58,6 +58,14 @@ pub enum Unphysical {
     #[error("its principal moment {0} is not above zero; a moment of inertia is a sum of m r²")]
     NotPositive(f64),
     #[error(
+        "its smallest principal moment is rounding beside its largest, {0} kg m²; give a thin body some thickness, or hold that axis (immovable)"
+    )]
+    TooThin(f64),
+    #[error(
+        "its principal moment {0:e} kg m² is outside 1e-150 to 1e150, beyond which 64-bit products fail"
+    )]
+    OutOfRange(f64),
+    #[error(
         "{largest} > {small} + {middle}; the largest moment may not exceed the sum of the others"
     )]
     Triangle {
@@ -71,6 +79,10 @@ pub enum Unphysical {
 /// meet it with equality, are often written to ten digits.
 const TRIANGLE_SLACK: f64 = 1e-9;
 
+/// Moments from 1/RANGE to RANGE kg m²: products of two, and of one with squares of speeds, stay
+/// well inside what an f64 holds. Planets have 1e38, grains of a nanometre 1e-42.
+const RANGE: f64 = 1e150;
+
 /// Accepts the tensors that some rigid body has: finite, symmetric, positive, and no principal
 /// moment larger than the sum of the other two (each is `∫ (y² + z²) dm` and so on).
 pub fn check_physical(inertia: &Matrix3<f64>) -> Result<(), Unphysical> {
@@ -83,12 +95,24 @@ pub fn check_physical(inertia: &Matrix3<f64>) -> Result<(), Unphysical> {
             return Err(Unphysical::NotSymmetric(i, j, a, b));
         }
     }
+    // Judged by the entries first: beyond the range the eigenvalues themselves fail.
+    let size = inertia.amax();
+    if size > RANGE {
+        return Err(Unphysical::OutOfRange(size));
+    }
     let (_, moments) = symmetric_eigen(inertia);
     let mut sorted: [f64; 3] = moments.into();
     sorted.sort_by(f64::total_cmp);
     let [small, middle, largest] = sorted;
     if small <= 0.0 {
         return Err(Unphysical::NotPositive(small));
+    }
+    // What rounding leaves of a moment that is really zero.
+    if small < 4.0 * f64::EPSILON * largest {
+        return Err(Unphysical::TooThin(largest));
+    }
+    if small < 1.0 / RANGE {
+        return Err(Unphysical::OutOfRange(small));
     }
     if largest > (small + middle) * (1.0 + TRIANGLE_SLACK) {
         return Err(Unphysical::Triangle {

@@ -37,15 +37,17 @@ pub fn symmetric_eigen(a: &Matrix3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
 fn rotate(a: &mut Matrix3<f64>, v: &mut Matrix3<f64>, p: usize, q: usize) -> bool {
     let off = a[(p, q)];
     // An entry this small moves neither eigenvalue by a rounding error.
-    let negligible = f64::EPSILON * 0.25 * (a[(p, p)].abs() * a[(q, q)].abs()).sqrt();
+    let negligible = f64::EPSILON * 0.25 * a[(p, p)].abs().sqrt() * a[(q, q)].abs().sqrt();
     if off == 0.0 || off.abs() <= negligible {
         a[(p, q)] = 0.0;
         a[(q, p)] = 0.0;
         return false;
     }
     let theta = 0.5 * (a[(q, q)] - a[(p, p)]) / off;
-    let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-    let c = 1.0 / t.hypot(1.0);
+    // Square roots rather than `hypot`, which differs from platform to platform; where θ² is
+    // infinite t is rightly 0.
+    let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+    let c = 1.0 / (t * t + 1.0).sqrt();
     let s = t * c;
     a[(p, p)] -= t * off;
     a[(q, q)] += t * off;

@@ -33,11 +33,6 @@ impl Times {
         self.steps.is_empty()
     }
 
-    pub fn clear(&mut self) {
-        self.nanoseconds.clear();
-        self.steps.clear();
-    }
-
     pub fn columns(&self) -> [TimeColumn; 2] {
         [
             TimeColumn::new_duration_nanos("sim_time", self.nanoseconds.iter().copied()),

@@ -46,7 +46,7 @@ struct Plot {
     single: &'static str,
 }
 
-const PLOTS: [Plot; 4] = [
+const PLOTS: [Plot; 5] = [
     Plot {
         stream: "torque",
         title: "torque τ (N·m)",
@@ -69,6 +69,13 @@ const PLOTS: [Plot; 4] = [
         single: "angular_velocity_norm",
     },
     Plot {
+        stream: "state",
+        title: "velocity v (m/s)",
+        symbol: "v",
+        components: Some("velocity"),
+        single: "velocity_norm",
+    },
+    Plot {
         stream: "energy",
         title: "kinetic energy E (J)",
         symbol: "E",
@@ -77,13 +84,16 @@ const PLOTS: [Plot; 4] = [
     },
 ];
 
-/// The text panel: what the scene shows, and how to read the picture.
+/// The text panel: what the scene shows.
 pub fn notes(setting: &Setting<'_>) -> String {
     let heading = setting.heading;
-    let mut text = format!(
-        "# {}\n\n{}\n\n## Reading the picture\n\n",
-        heading.title, heading.notes
-    );
+    format!("# {}\n\n{}\n", heading.title, heading.notes)
+}
+
+/// How to read the picture.
+pub fn legend(setting: &Setting<'_>) -> String {
+    let heading = setting.heading;
+    let mut text = String::new();
     for drawn in &DRAWN {
         let seen = drawn.stream != "force" || heading.has_pushes;
         if heading.streams.contains(drawn.stream) && seen {
@@ -105,7 +115,7 @@ pub fn notes(setting: &Setting<'_>) -> String {
     {
         text += "- **grey dot**: a pivot; torque, inertia and angular momentum are then about it\n";
     }
-    text + "\nA tab above for each body; every number in `/numbers/NAME`.\n"
+    text + "\nEach body has a tab above. Numbers, plots and arrows are sampled less often than poses are: a page says of which instant it is.\n"
 }
 
 /// Writes the blueprint.
@@ -149,7 +159,11 @@ fn overview(blueprint: &mut Blueprint<'_>, setting: &Setting<'_>) -> Result<Part
         &[picture, log],
         &[5.0, 1.0],
     )?;
-    let notes = document(blueprint, "what to look at", "/notes")?;
+    let notes = [
+        document(blueprint, "what to look at", "/notes")?,
+        document(blueprint, "reading the picture", "/legend")?,
+    ];
+    let notes = blueprint.container(ContainerKind::Tabs, "text", &notes, &[])?;
     let mut texts = vec![notes];
     if setting.heading.streams.contains("numbers") {
         for subject in all.iter().take(MOST_TABS) {
@@ -238,7 +252,7 @@ fn spatial(
 ) -> Result<Part, RecordError> {
     let (centre, reach) = bounds(seen, setting.heading.scales.size);
     // From the front, from the right and above, so that arrows along any axis have a length.
-    let from = centre + Vector3::new(0.3, 0.5, 1.0).normalize() * (1.65 * reach);
+    let from = centre + Vector3::new(0.3, 0.5, 1.0).normalize() * (1.6 * reach);
     let point = |v: Vector3<f64>| components::Position3D::new(v.x as f32, v.y as f32, v.z as f32);
     let eye = ba::EyeControls3D::new()
         .with_kind(bc::Eye3DKind::Orbital)
@@ -274,7 +288,7 @@ fn bounds(seen: &[&Subject], size: f64) -> (Vector3<f64>, f64) {
         .fold(Vector3::repeat(f64::INFINITY), |a, b| a.inf(&b));
     let high = starts.fold(Vector3::repeat(f64::NEG_INFINITY), |a, b| a.sup(&b));
     let centre = (low + high) * 0.5;
-    let reach = 0.5 * (high - low).norm() + 1.8 * size;
+    let reach = 0.5 * (high - low).norm() + 2.6 * size;
     match centre.iter().all(|x| x.is_finite()) && reach.is_finite() {
         true => (centre, reach),
         false => (Vector3::zeros(), 5.0 * size),

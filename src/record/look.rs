@@ -18,16 +18,17 @@ pub const NAME: Colour = 0x80_88_90_FF;
 /// Components of a vector in a plot of one body: x, y, z.
 pub const COMPONENTS: [Colour; 3] = [0xE0_31_31_FF, 0x2B_8A_3E_FF, 0x33_7A_E0_FF];
 
-/// Bodies, in the order of the scene, again from the start where there are more.
+/// Bodies, in the order of the scene, again from the start where there are more: hues that no
+/// quantity has.
 pub const BODIES: [Colour; 8] = [
-    0x33_7A_E0_FF,
-    0xD9_7B_00_FF,
-    0x2B_9A_5B_FF,
-    0xB5_5A_C8_FF,
-    0xD6_50_5C_FF,
-    0x0C_92_A8_FF,
-    0x8D_7B_3E_FF,
-    0x7A_86_94_FF,
+    0x4A_8F_C7_FF,
+    0xA9_74_4F_FF,
+    0x75_84_94_FF,
+    0x86_8B_3A_FF,
+    0xC2_70_8F_FF,
+    0x5E_7F_A8_FF,
+    0x6B_8E_86_FF,
+    0x9A_80_68_FF,
 ];
 
 /// The ground grid. The background is the viewer's own, which follows its theme as labels do.
@@ -35,8 +36,8 @@ pub const GRID: Colour = 0x80_88_90_60;
 
 /// Radii of lines, in points of the screen, so that nothing vanishes in the distance.
 pub const BOLD: f32 = 2.6;
-pub const MEDIUM: f32 = 1.8;
-pub const THIN: f32 = 1.0;
+pub const MEDIUM: f32 = 2.0;
+pub const THIN: f32 = 1.1;
 
 /// The same colour with another opacity.
 pub fn with_alpha(colour: Colour, alpha: u8) -> Colour {

@@ -1,12 +1,34 @@
 //! A body's numbers at an instant, as a page to read.
 
-use crate::trace::{Quantity, Sample, Shape, Subject, short, short_numbers};
+use crate::trace::{Instant, Quantity, Sample, Shape, Subject, short, short_numbers};
 use std::fmt::Write as _;
 
 /// Markdown with every number of `quantities`.
-pub fn page(subject: &Subject, sample: &Sample, quantities: &[&'static Quantity]) -> String {
+pub fn page(
+    subject: &Subject,
+    at: Instant,
+    sample: &Sample,
+    quantities: &[&'static Quantity],
+) -> String {
     let mut text = format!("**{}**", subject.label);
-    let _ = writeln!(text, " · world axes, about the {}\n", subject.reference());
+    let _ = writeln!(
+        text,
+        " at {} s, step {} · world axes, about the {}\n",
+        short(at.time),
+        at.step,
+        subject.reference()
+    );
+    let held: Vec<&str> = (0..3)
+        .filter(|&k| subject.held[k])
+        .map(|k| ["x", "y", "z"][k])
+        .collect();
+    if !held.is_empty() {
+        let _ = writeln!(
+            text,
+            "held about its own {}: nothing turns it there, and its inertia there counts 0\n",
+            held.join(", ")
+        );
+    }
     text.push_str("| | x | y | z | length |\n|---|--:|--:|--:|--:|\n");
     let mut values = Vec::new();
     for quantity in quantities
@@ -54,8 +76,10 @@ fn row(text: &mut String, quantity: &Quantity, vector: &[f64]) {
     let cells = short_numbers(vector).join(" | ");
     let _ = writeln!(
         text,
-        "| {} {} | {cells} | {length} |",
-        quantity.symbol, quantity.unit
+        "| {} {} ({}) | {cells} | {length} |",
+        spoken(quantity),
+        quantity.symbol,
+        quantity.unit
     );
 }
 
@@ -69,4 +93,9 @@ fn matrix(text: &mut String, quantity: &Quantity, values: &[f64]) {
     for (axis, row) in ["x", "y", "z"].iter().zip(cells.chunks_exact(3)) {
         let _ = writeln!(text, "| {axis} | {} |", row.join(" | "));
     }
+}
+
+/// Its name as one says it.
+fn spoken(quantity: &Quantity) -> String {
+    quantity.name.replace('_', " ")
 }

@@ -21,15 +21,19 @@ use rerun::{Component as _, ComponentDescriptor, TimePoint, Timeline};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Rows a chunk: compression sees 64 KiB at a time, and a few hundred rows fill that.
+/// Rows a chunk at most: compression sees 64 KiB at a time, and a few hundred rows fill that.
 const STATE_ROWS: usize = 1024;
 const DERIVED_ROWS: usize = 256;
+/// Rows buffered over all bodies, so that memory does not grow with their number.
+const BUFFERED_ROWS: usize = 1 << 17;
 
 /// Writes a trace to an `.rrd` file.
 pub struct Recorder {
     path: PathBuf,
     file: RrdFile,
     bodies: Vec<BodyRecorder>,
+    state_rows: usize,
+    derived_rows: usize,
 }
 
 /// What was written.
@@ -70,15 +74,20 @@ impl Recorder {
         file.statics("/__properties", &[&info])?;
         let notes = TextDocument::from_markdown(layout::notes(&setting));
         file.statics("/notes", &[&notes])?;
+        let legend = TextDocument::from_markdown(layout::legend(&setting));
+        file.statics("/legend", &[&legend])?;
         for (k, subject) in subjects.iter().enumerate() {
             let body = BodyRecorder::new(subject, k, heading);
             body.statics(&mut file, k, heading)?;
             bodies.push(body);
         }
+        let share = (BUFFERED_ROWS / subjects.len().max(1)).max(8);
         Ok(Self {
             path: path.to_owned(),
             file,
             bodies,
+            state_rows: share.min(STATE_ROWS),
+            derived_rows: share.min(DERIVED_ROWS),
         })
     }
 
@@ -104,7 +113,7 @@ impl Sink for Recorder {
             let motions = &track.motions[k * width..(k + 1) * width];
             for (body, motion) in self.bodies[track.bodies.clone()].iter_mut().zip(motions) {
                 body.motion(at, motion);
-                if body.state_times.len() >= STATE_ROWS {
+                if body.state_times.len() >= self.state_rows {
                     body.flush_state(&mut self.file)?;
                 }
             }
@@ -120,7 +129,7 @@ impl Sink for Recorder {
     ) -> Result<(), SinkError> {
         for (body, sample) in self.bodies[bodies].iter_mut().zip(samples) {
             body.sample(at, sample);
-            if body.times.len() >= DERIVED_ROWS {
+            if body.times.len() >= self.derived_rows {
                 body.flush_derived(&mut self.file)?;
             }
         }
@@ -253,14 +262,15 @@ impl BodyRecorder {
             picture.row(at, &self.subject, sample);
         }
         if let Some(pages) = &mut self.pages {
-            pages.push(page::page(&self.subject, sample, &self.quantities));
+            pages.push(page::page(&self.subject, at, sample, &self.quantities));
         }
     }
 
     /// The state: f32 pose for the picture, f64 angular velocity.
     fn flush_state(&mut self, file: &mut RrdFile) -> Result<(), RecordError> {
         let name = &self.subject.name;
-        let rows = self.state_times.len();
+        let times = std::mem::take(&mut self.state_times);
+        let rows = times.len();
         let one = Ends::uniform(rows, 1);
         let positions = std::mem::take(&mut self.positions);
         let attitudes = std::mem::take(&mut self.attitudes);
@@ -277,29 +287,25 @@ impl BodyRecorder {
             omegas,
             Ends::uniform(rows, 3),
         );
-        file.columns(
-            format!("/bodies/{name}"),
-            &self.state_times,
-            vec![translation],
-        )?;
+        file.columns(format!("/bodies/{name}"), &times, vec![translation])?;
         file.columns(
             format!("/bodies/{name}/spin"),
-            &self.state_times,
+            &times,
             vec![quaternion, omega],
         )?;
-        self.state_times.clear();
         Ok(())
     }
 
     fn flush_derived(&mut self, file: &mut RrdFile) -> Result<(), RecordError> {
         let name = &self.subject.name;
+        let times = std::mem::take(&mut self.times);
         let mut columns = Vec::with_capacity(self.quantities.len());
         for (quantity, slot) in self.quantities.iter().zip(&mut self.values) {
             let (values, ends) = std::mem::take(slot);
             columns.push(numbers(number_descriptor(quantity.name), values, ends));
         }
         if !columns.is_empty() {
-            file.columns(format!("/numbers/{name}"), &self.times, columns)?;
+            file.columns(format!("/numbers/{name}"), &times, columns)?;
         }
         for picture in &mut self.pictures {
             picture.flush(file, &self.subject)?;
@@ -308,9 +314,8 @@ impl BodyRecorder {
             let pages = std::mem::take(pages);
             let ends = Ends::uniform(pages.len(), 1);
             let text = texts(TextDocument::descriptor_text(), pages, ends);
-            file.columns(format!("/pages/{name}"), &self.times, vec![text])?;
+            file.columns(format!("/pages/{name}"), &times, vec![text])?;
         }
-        self.times.clear();
         Ok(())
     }
 }

@@ -74,13 +74,14 @@ impl Bodies {
     }
 }
 
-pub(super) fn read_all(tables: &[Table<'_>], problems: &mut Problems) -> Bodies {
+pub(super) fn read_all(tables: &[Table<'_>], gyroscopic: bool, problems: &mut Problems) -> Bodies {
     let mut bodies = Bodies {
         declared: tables.len(),
         valid: Vec::new(),
         index: HashMap::new(),
     };
     for (k, table) in tables.iter().enumerate() {
+        // A name that will not do still names its body to the events.
         if let Some(node) = table.require("name", "a name for it", problems)
             && let Some(name) = name(&node, problems)
             && bodies.index.insert(name.to_owned(), k).is_some()
@@ -90,31 +91,52 @@ pub(super) fn read_all(tables: &[Table<'_>], problems: &mut Problems) -> Bodies 
                 problems,
             );
         }
+        if let Some(node) = table.get("immovable")
+            && gyroscopic
+        {
+            node.problem(
+                "with gyroscopic = true has no meaning yet: a held axis is the tutorial's, whose model has no gyroscopic term; use a pivot, or switch one of them off",
+                problems,
+            );
+        }
         bodies.valid.push(read(table, problems));
         table.check_keys(problems);
     }
     bodies
 }
 
+/// Bytes of a name, and of a label: what a picture can show.
+const LONGEST_NAME: usize = 64;
+
 /// Names become paths of the recording, so they hold nothing that a path would read otherwise.
 fn name<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
     let name = node.str(problems)?;
     let plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-    if name.is_empty() || !name.chars().all(plain) {
+    if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(plain) {
         node.problem(
-            "is no name: it may hold letters, digits, - and _ (a label may hold anything)",
+            format!("is no name: it may hold up to {LONGEST_NAME} letters, digits, - and _ (a label may hold anything)"),
             problems,
         );
-        return None;
     }
     Some(name)
+}
+
+fn label<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
+    let label = node.str(problems)?;
+    if label.len() > LONGEST_NAME || label.contains(char::is_control) {
+        node.problem(
+            format!("is no label: one line of up to {LONGEST_NAME} bytes"),
+            problems,
+        );
+    }
+    Some(label)
 }
 
 fn read(table: &Table<'_>, problems: &mut Problems) -> Option<Body> {
     let name = table
         .get("name")
         .and_then(|node| node.str(&mut Problems::new("", "")));
-    let label = table.get("label").and_then(|node| node.str(problems));
+    let label = table.get("label").and_then(|node| label(&node, problems));
     let shape = table.get("shape").map(|node| solid(&node, problems));
     let solid: Option<Arc<dyn Solid>> = shape.as_ref().and_then(Option::clone);
     let properties = properties(table, shape.as_ref(), problems);
@@ -140,6 +162,10 @@ fn read(table: &Table<'_>, problems: &mut Problems) -> Option<Body> {
     };
     if let Some(node) = pivot {
         let pivot = point(&node, &body, problems)?;
+        if let Err(why) = body.properties.check_about(pivot) {
+            node.problem(format!("cannot be held there: {why}"), problems);
+            return None;
+        }
         body.pivot_b = Some(pivot);
         if let Some(velocity) = velocity
             && body.velocity_w != Vector3::zeros()
@@ -169,6 +195,9 @@ fn vector(
 /// A point of the body, by name or by three numbers in body axes from the shape's origin;
 /// returned from the centre of mass.
 pub(super) fn point(node: &Node<'_>, body: &Body, problems: &mut Problems) -> Option<Vector3<f64>> {
+    if let Some(("body", inner)) = node.only_entry() {
+        return point(&inner, body, problems);
+    }
     if !node.is_text() {
         return Some(body.relative_to_centre(node.vector("m", problems)?));
     }
@@ -179,7 +208,7 @@ pub(super) fn point(node: &Node<'_>, body: &Body, problems: &mut Problems) -> Op
         None => {
             let names: Vec<&str> = points.iter().map(|(name, _)| *name).collect();
             let message = format!(
-                "is no named point of this body ({}); or write three numbers in its axes, m",
+                "is no named point of this body ({}); a point by numbers is {{ body = [x, y, z] }} in its axes, m",
                 names.join(", ")
             );
             node.problem(message, problems);
@@ -255,6 +284,13 @@ fn properties(
             return None;
         }
         if let Some(node) = explicit {
+            node.problem(
+                "says nothing of a body of infinite mass; leave it out",
+                problems,
+            );
+            return None;
+        }
+        if let Some(node) = density {
             node.problem(
                 "says nothing of a body of infinite mass; leave it out",
                 problems,
@@ -390,7 +426,11 @@ fn immovable(table: &Table<'_>, problems: &mut Problems) -> Option<[bool; 3]> {
 fn orientation(node: Node<'_>, problems: &mut Problems) -> Option<UnitQuaternion<f64>> {
     if !node.is_table() {
         let [x, y, z, w] = node.numbers::<4>("a quaternion x, y, z, w, body to world", problems)?;
-        let q = UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 0.0);
+        let largest = [x, y, z, w]
+            .into_iter()
+            .fold(0.0_f64, |a, b| a.max(b.abs()));
+        let q = Quaternion::new(w / largest, x / largest, y / largest, z / largest);
+        let q = UnitQuaternion::try_new(q, 0.0).filter(|_| largest > 0.0);
         if q.is_none() {
             node.problem(
                 "has no length; a rotation by nothing is [0, 0, 0, 1]",
@@ -403,7 +443,8 @@ fn orientation(node: Node<'_>, problems: &mut Problems) -> Option<UnitQuaternion
     let axis = table.require("axis", "the axis turned about, such as [0, 0, 1]", problems);
     let degrees = table.require("degrees", "the angle in degrees", problems);
     let axis = axis.and_then(|node| {
-        let axis = Unit::try_new(node.vector("a direction", problems)?, 0.0);
+        let axis = node.vector("a direction", problems)?;
+        let axis = Unit::try_new(axis / axis.amax(), 0.0).filter(|_| axis.amax() > 0.0);
         if axis.is_none() {
             node.problem("has no length, so it is no axis", problems);
         }

@@ -51,15 +51,22 @@ pub enum Framed {
     Body(Vector3<f64>),
 }
 
+/// The scene's times, as far as they are right: s.
+#[derive(Clone, Copy)]
+pub(super) struct Clock {
+    pub duration: Option<f64>,
+    pub step: Option<f64>,
+}
+
 pub(super) fn read_all(
     tables: &[Table<'_>],
     bodies: &Bodies,
-    duration: Option<f64>,
+    clock: Clock,
     problems: &mut Problems,
 ) -> Vec<Event> {
     let mut events = Vec::new();
     for table in tables {
-        events.extend(read(table, bodies, duration, problems));
+        events.extend(read(table, bodies, clock, problems));
         table.check_keys(problems);
     }
     events
@@ -76,11 +83,13 @@ const ACTIONS: [(&str, &str, &str); 4] = [
 fn read(
     table: &Table<'_>,
     bodies: &Bodies,
-    duration: Option<f64>,
+    clock: Clock,
     problems: &mut Problems,
 ) -> Option<Event> {
-    let at = time(table, duration, problems);
-    let lasts = table.get("for").map(|node| node.positive("s", problems));
+    let at = time(table, clock.duration, problems);
+    let lasts = table
+        .get("for")
+        .map(|node| lasts(&node, at, clock, problems));
     let index = table.require("body", "the name of the body it acts on", problems);
     let index = index.and_then(|node| bodies.find(&node, problems));
     let in_body = in_body_axes(table, problems);
@@ -156,6 +165,23 @@ fn time(table: &Table<'_>, duration: Option<f64>, problems: &mut Problems) -> Op
         return None;
     }
     Some(at)
+}
+
+/// How long it lasts; what the clock cannot tell from an instant is refused, lest it vanish.
+fn lasts(node: &Node<'_>, at: Option<f64>, clock: Clock, problems: &mut Problems) -> Option<f64> {
+    let lasts = node.positive("s", problems)?;
+    let step = clock.step.unwrap_or(0.0);
+    let finest = (1e-8 * step)
+        .max(8.0 * f64::EPSILON * at.unwrap_or(0.0))
+        .max(1e-9);
+    if lasts < finest {
+        node.problem(
+            format!("is shorter than the clock tells apart here ({finest:e} s); write an impulse instead"),
+            problems,
+        );
+        return None;
+    }
+    Some(lasts)
 }
 
 fn in_body_axes(table: &Table<'_>, problems: &mut Problems) -> Option<bool> {

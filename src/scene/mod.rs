@@ -16,6 +16,7 @@ pub use problem::Problems;
 use crate::effect::Called;
 use crate::integrator::Method;
 use crate::trace::StreamSet;
+use std::io::Read as _;
 use std::path::Path;
 
 /// A scripted run.
@@ -76,7 +77,7 @@ impl Scene {
     /// Reads and checks a scene file.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
         let file = path.display().to_string();
-        let source = std::fs::read_to_string(path).map_err(|error| SceneError::Unreadable {
+        let source = read_to_string(path).map_err(|error| SceneError::Unreadable {
             why: error.to_string(),
             remedy: remedy_for(path, &error),
             file: file.clone(),
@@ -94,12 +95,28 @@ impl Scene {
     }
 }
 
+/// A scene's bytes at most: 10,000 bodies take two million.
+const LARGEST: u64 = 1 << 26;
+
+fn read_to_string(path: &Path) -> std::io::Result<String> {
+    let mut source = String::new();
+    let file = std::fs::File::open(path)?;
+    if file.take(LARGEST + 1).read_to_string(&mut source)? as u64 > LARGEST {
+        let why = format!("it is larger than any scene ({LARGEST} bytes)");
+        return Err(std::io::Error::other(why));
+    }
+    Ok(source)
+}
+
 fn remedy_for(path: &Path, error: &std::io::Error) -> String {
     if error.kind() == std::io::ErrorKind::InvalidData {
         return "a scene is a text in UTF-8".to_owned();
     }
     if path.is_dir() {
         return "name a scene file, not a folder".to_owned();
+    }
+    if error.kind() != std::io::ErrorKind::NotFound {
+        return "a scene is a TOML file that you may read".to_owned();
     }
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

@@ -16,7 +16,12 @@ pub struct Problems {
     file: String,
     source: String,
     list: Vec<Problem>,
+    /// Problems beyond [`MOST`].
+    more: usize,
 }
+
+/// Problems told one by one; a file with more is wrong as a whole.
+const MOST: usize = 50;
 
 impl Problems {
     pub(super) fn new(file: &str, source: &str) -> Self {
@@ -24,6 +29,7 @@ impl Problems {
             file: file.to_owned(),
             source: source.to_owned(),
             list: Vec::new(),
+            more: 0,
         }
     }
 
@@ -31,10 +37,15 @@ impl Problems {
     pub(super) fn add(&mut self, span: &Range<usize>, message: impl Into<String>) {
         let problem = Problem {
             offset: span.start.min(self.source.len()),
-            message: message.into().replace('\n', " "),
+            // One line, whatever the file or its keys hold.
+            message: message.into().replace(char::is_control, " "),
         };
-        if !self.list.contains(&problem) {
-            self.list.push(problem);
+        if self.list.contains(&problem) {
+            return;
+        }
+        match self.list.len() < MOST {
+            true => self.list.push(problem),
+            false => self.more += 1,
         }
     }
 
@@ -77,6 +88,9 @@ impl fmt::Display for Problems {
                 writeln!(f)?;
             }
             write!(f, "{}:{line}:{column}: {}", self.file, problem.message)?;
+        }
+        if self.more > 0 {
+            write!(f, "\n{}: and {} problems more", self.file, self.more)?;
         }
         Ok(())
     }

@@ -16,6 +16,8 @@ const DEFAULT_RATE: f64 = 60.0;
 const LONGEST: f64 = 9.2e9;
 /// The unit of a recording's clock, s.
 const SHORTEST_STEP: f64 = 1e-9;
+/// Rows of the state that are recorded without being asked for by name: about 2 GB.
+const MOST_ROWS: f64 = 3e7;
 /// More steps than this cannot be counted exactly in an f64 (2⁵³), nor waited for.
 const MOST_STEPS: f64 = 9e15;
 
@@ -24,7 +26,8 @@ pub(super) fn scene(file: &str, name: &str, source: &str) -> Result<Scene, Probl
     let source = source.strip_prefix('\u{feff}').unwrap_or(source);
     let mut problems = Problems::new(file, source);
     let (document, errors) = DeTable::parse_recoverable(source);
-    for error in &errors {
+    // After the first faults a parser guesses.
+    for error in errors.iter().take(3) {
         let span = error.span().unwrap_or(0..0);
         problems.add(&span, format!("not TOML: {}", error.message()));
     }
@@ -47,17 +50,29 @@ fn read(top: &Table<'_>, name: &str, source: &str, problems: &mut Problems) -> O
         .unwrap_or(name);
     let duration = duration(top, problems);
     let (method, step) = stepping(top, duration, problems);
-    let record = record(top, problems);
+    let (record, rate_chosen) = record(top, problems);
     let effects = effects(top, step.unwrap_or(DEFAULT_STEP), problems);
-    let bodies = body::read_all(&top.tables("body", problems), problems);
-    if bodies.declared == 0 {
+    let gyroscopic = effects.iter().any(|(name, _)| *name == "gyroscopic");
+    let bodies = body::read_all(&top.tables("body", problems), gyroscopic, problems);
+    if bodies.declared == 0 && !top.has("body") {
         problems.add(top.span(), "the scene has no body; add a [[body]]");
     }
     let events = top.tables("event", problems);
-    let events = event::read_all(&events, &bodies, duration, problems);
+    if let (Some(duration), Some(step), false) = (duration, step, rate_chosen) {
+        let rows = duration / step * bodies.declared as f64;
+        if rows > MOST_ROWS {
+            let message = format!(
+                "the state at every step would be {rows:.1e} rows, some {:.0} GB; take a larger step, or say [record] state = 1000 (a second), or state = \"every\" if it is meant",
+                rows * 75e-9
+            );
+            problems.add(top.span(), message);
+        }
+    }
+    let clock = event::Clock { duration, step };
+    let events = event::read_all(&events, &bodies, clock, problems);
     Some(Scene {
         name: name.to_owned(),
-        title: title.to_owned(),
+        title: title.replace(char::is_control, " "),
         notes: opening_comment(source),
         fingerprint: fingerprint(source),
         duration: duration?,
@@ -77,6 +92,13 @@ fn duration(top: &Table<'_>, problems: &mut Problems) -> Option<f64> {
         problems,
     )?;
     let duration = node.positive("s", problems)?;
+    if duration < SHORTEST_STEP {
+        node.problem(
+            "is below a nanosecond, the finest time a recording tells apart",
+            problems,
+        );
+        return None;
+    }
     if duration > LONGEST {
         node.problem(
             format!("is longer than a recording's clock counts ({LONGEST:e} s)"),
@@ -93,8 +115,9 @@ fn stepping(
     problems: &mut Problems,
 ) -> (Option<&'static dyn Method>, Option<f64>) {
     let default = integrator::find(DEFAULT_METHOD);
+    let default_step = DEFAULT_STEP.min(duration.unwrap_or(DEFAULT_STEP));
     let Some(table) = top.table("stepping", problems) else {
-        return (default, Some(DEFAULT_STEP));
+        return (default, Some(default_step));
     };
     let method = match table.get("method") {
         None => default,
@@ -109,11 +132,13 @@ fn stepping(
         }),
     };
     let step = match table.get("step") {
-        None => Some(DEFAULT_STEP),
+        None => Some(default_step),
         Some(node) => node.positive("s", problems).filter(|&step| {
             let steps = duration.unwrap_or(0.0) / step;
             let why = if step < SHORTEST_STEP {
                 format!("is below a nanosecond, the finest time a recording tells apart ({SHORTEST_STEP:e} s)")
+            } else if steps < 1.0 && duration.is_some() {
+                "is longer than the scene".to_owned()
             } else if steps > MOST_STEPS {
                 format!("makes {steps:.1e} steps of this scene; at most {MOST_STEPS:e} can be counted")
             } else {
@@ -127,14 +152,21 @@ fn stepping(
     (method, step)
 }
 
-fn record(top: &Table<'_>, problems: &mut Problems) -> Option<Record> {
+/// What to record, and whether the file says how often the state is.
+fn record(top: &Table<'_>, problems: &mut Problems) -> (Option<Record>, bool) {
     let Some(table) = top.table("record", problems) else {
-        return Some(Record {
+        let record = Record {
             rate: DEFAULT_RATE,
             state: StateRate::EveryStep,
             streams: StreamSet::default_set(),
-        });
+        };
+        return (Some(record), false);
     };
+    let chosen = table.has("state");
+    (record_table(&table, problems), chosen)
+}
+
+fn record_table(table: &Table<'_>, problems: &mut Problems) -> Option<Record> {
     let rate = match table.get("rate") {
         None => Some(DEFAULT_RATE),
         Some(node) => node.positive(PER_SECOND, problems),

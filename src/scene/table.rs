@@ -58,6 +58,10 @@ impl<'d> Table<'d> {
         })
     }
 
+    pub fn has(&self, key: &str) -> bool {
+        self.entries.contains_key(key)
+    }
+
     /// The value of a key that must be there.
     pub fn require(
         &self,
@@ -84,7 +88,8 @@ impl<'d> Table<'d> {
             return Vec::new();
         };
         let Some(items) = node.value.as_array() else {
-            node.wrong(&format!("a list of tables, each under [[{key}]]"), problems);
+            let message = format!("`{key}` takes a list of tables; write [[{key}]] above each");
+            problems.add(&node.span, message);
             return Vec::new();
         };
         let mut tables = Vec::new();
@@ -106,27 +111,38 @@ impl<'d> Table<'d> {
             let name = key.get_ref().as_ref();
             if !known.contains(&name) {
                 let remedy = nearest(name, &known);
-                let message = format!("unknown key `{name}` in {}; {remedy}", self.name);
+                let message = format!(
+                    "unknown key `{}` in {}; {remedy}",
+                    shortened(name),
+                    self.name
+                );
                 problems.add(&key.span(), message);
             }
         }
     }
 }
 
-/// "did you mean `x`?", or the list of what there is.
+/// "did you mean `x`?", or some of what there is.
 pub(super) fn nearest(name: &str, known: &[&str]) -> String {
+    /// Longer than this nothing is a slip of the hand, and comparing takes its time.
+    const LONGEST: usize = 64;
+    /// As many as one reads.
+    const MOST: usize = 16;
+    let length = name.chars().count();
     // A slip of the hand: up to a third of the letters, by edits or swaps.
-    let close = |candidate: &&&str| {
-        3 * strsim::damerau_levenshtein(name, candidate) <= name.chars().count().max(3)
-    };
-    let best = known
+    let distance = |candidate: &&&str| strsim::damerau_levenshtein(name, candidate);
+    let close = |candidate: &&&str| 3 * distance(candidate) <= length.max(3);
+    let comparable = known
         .iter()
-        .filter(close)
-        .min_by_key(|candidate| strsim::damerau_levenshtein(name, candidate));
-    match best {
-        Some(best) => format!("did you mean `{best}`?"),
-        None => format!("known here: {}", known.join(", ")),
+        .filter(|c| length <= LONGEST && c.len() <= LONGEST);
+    if let Some(best) = comparable.filter(close).min_by_key(distance) {
+        return format!("did you mean `{best}`?");
     }
+    let mut some = known[..known.len().min(MOST)].join(", ");
+    if known.len() > MOST {
+        some += ", …";
+    }
+    format!("known here: {some}")
 }
 
 impl<'d> Node<'d> {
@@ -209,7 +225,13 @@ impl<'d> Node<'d> {
     /// `N` finite numbers.
     pub fn numbers<const N: usize>(&self, unit: &str, problems: &mut Problems) -> Option<[f64; N]> {
         let Some(array) = self.value.as_array().filter(|a| a.len() == N) else {
-            self.wrong(&format!("a list of {N} numbers ({unit})"), problems);
+            match self.array_length() {
+                Some(length) => self.problem(
+                    format!("has {length} entries, not {N} numbers ({unit})"),
+                    problems,
+                ),
+                None => self.wrong(&format!("a list of {N} numbers ({unit})"), problems),
+            }
             return None;
         };
         let mut numbers = [0.0; N];
@@ -295,10 +317,22 @@ fn as_number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(float) => float.as_str().parse().ok(),
         DeValue::Integer(integer) => {
-            let whole = i128::from_str_radix(integer.as_str(), integer.radix()).ok()?;
-            Some(whole as f64)
+            // Of any length: what an i128 does not hold is a number all the same.
+            let whole = i128::from_str_radix(integer.as_str(), integer.radix());
+            whole.map_or_else(
+                |_| integer.as_str().parse().ok(),
+                |whole| Some(whole as f64),
+            )
         }
         _ => None,
+    }
+}
+
+/// Not longer than one reads.
+pub(super) fn shortened(name: &str) -> String {
+    match name.char_indices().nth(64) {
+        Some((cut, _)) => format!("{}…", &name[..cut]),
+        None => name.to_owned(),
     }
 }
 

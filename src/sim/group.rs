@@ -6,7 +6,7 @@ use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
 use crate::effect::{Called, Couple, Effect, Frame, Load, Push, WrenchBlock};
 use crate::integrator::Method;
 use crate::mass::tensor;
-use crate::scene::{Action, Body, Framed, Scene};
+use crate::scene::{Action, Body, Event, Framed, Scene};
 use crate::trace::{Motion, PointForce, Sample, Subject};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
@@ -47,6 +47,7 @@ pub fn subject(body: &Body) -> Subject {
         pivot_w: body
             .pivot_b
             .map(|pivot_b| body.position_w + body.q_wb * pivot_b),
+        held: body.properties.immovable(),
         inertia_b: turned(inertial.moments),
         inverse_inertia_b: turned(inertial.inv_moments),
         inertia_c: body.properties.inertia_about(Vector3::zeros()),
@@ -125,6 +126,10 @@ impl Group {
         Some(self.members.start + lane)
     }
 
+    pub fn is_finite(&self, body: usize) -> bool {
+        self.state.get(body - self.members.start).is_finite()
+    }
+
     /// Radians a body turned in a step of `h` before its state was lost: the last turn in which
     /// the body still turned less than a whole turn, or the first there is.
     pub fn turn_in_a_step(&self, body: usize, h: f64) -> f64 {
@@ -174,6 +179,20 @@ impl Group {
                 }
                 Action::Impulse { .. } | Action::AngularImpulse { .. } => {}
             }
+        }
+    }
+
+    /// The torque about the reference point that an event applies by itself, world, N·m.
+    pub fn torque_of(&self, event: &Event) -> Vector3<f64> {
+        let lane = event.body - self.members.start;
+        let state = self.state.get(lane);
+        match event.action {
+            Action::Push { force, point, .. } => {
+                let arm_w = self.point(lane, point).point_w(&state) - state.x_w;
+                arm_w.cross(&self.direction(lane, force).vector_w(&state))
+            }
+            Action::Torque { torque, .. } => self.direction(lane, torque).vector_w(&state),
+            Action::Impulse { .. } | Action::AngularImpulse { .. } => Vector3::zeros(),
         }
     }
 

@@ -42,8 +42,10 @@ pub struct Blow {
     pub at: Instant,
     /// Index of the event.
     pub event: usize,
-    /// Just after the event began.
+    /// Just after the event began, under everything that acts.
     pub sample: Sample,
+    /// What this event alone applies: the torque about the reference point, world, N·m.
+    pub tau_w: Vector3<f64>,
     /// For an impulse.
     pub jump: Option<Jump>,
 }
@@ -135,7 +137,8 @@ impl<'s> Simulation<'s> {
         self.happen(start, &script::at_start(self.scene), outcome, sink)?;
         self.deliver_motions(start, sink)?;
         sink.samples(start, 0..self.subjects.len(), &self.samples(start.time))?;
-        self.must_be_finite(start, sink)?;
+        let all: Vec<usize> = (0..self.subjects.len()).collect();
+        self.must_be_finite(start, &all, sink)?;
         while let Some((steps, mark)) = schedule.next_stretch() {
             if let Some((taken, body)) = self.stretch(&steps, sink)? {
                 schedule.stop_after(&steps[taken - 1]);
@@ -162,7 +165,7 @@ impl<'s> Simulation<'s> {
                         self.deliver_motions(now, sink)?;
                     }
                     self.deliver_touched(now, &happenings, sink)?;
-                    self.must_be_finite(now, sink)?;
+                    self.must_be_finite(now, &self.touched(&happenings), sink)?;
                 }
             }
         }
@@ -212,8 +215,19 @@ impl<'s> Simulation<'s> {
         Ok(lost)
     }
 
-    fn must_be_finite(&self, now: Instant, sink: &mut dyn Sink) -> Result<(), SimError> {
-        match self.groups.iter().find_map(Group::first_not_finite) {
+    /// Whether these bodies' states and accelerations can be computed with.
+    fn must_be_finite(
+        &self,
+        now: Instant,
+        bodies: &[usize],
+        sink: &mut dyn Sink,
+    ) -> Result<(), SimError> {
+        let lost = |&body: &usize| {
+            let group = self.group_of(body);
+            let sample = group.sample(body, now.time);
+            !(group.is_finite(body) && sample.alpha_w.iter().all(|x| x.is_finite()))
+        };
+        match bodies.iter().copied().find(lost) {
             None => Ok(()),
             Some(body) => Err(self.not_finite(now, body, sink)),
         }
@@ -284,15 +298,18 @@ impl<'s> Simulation<'s> {
         for (happening, &jump) in happenings.iter().zip(&jumps) {
             let event = &self.scene.events[happening.event()];
             let subject = &self.subjects[event.body];
-            let sample = self.group_of(event.body).sample(event.body, now.time);
+            let group = self.group_of(event.body);
+            let sample = group.sample(event.body, now.time);
+            let tau_w = group.torque_of(event);
             let note = match *happening {
                 Happening::Ends(_) => script::end_note(event, subject, &sample),
                 Happening::Begins(k) => {
-                    let note = script::begin_note(event, subject, &sample, jump);
+                    let note = script::begin_note(event, subject, (tau_w, &sample), jump);
                     outcome.blows.push(Blow {
                         at: now,
                         event: k,
                         sample,
+                        tau_w,
                         jump,
                     });
                     note

@@ -51,6 +51,8 @@ pub struct Schedule<'s> {
     scene: &'s Scene,
     now: Node,
     steps: u64,
+    /// Sampling instants of the derived streams that have been delivered.
+    shown: f64,
     /// Begins and ends after the start, in order of time.
     happenings: std::iter::Peekable<std::vec::IntoIter<(Node, Vec<Happening>)>>,
     end: Node,
@@ -67,6 +69,9 @@ impl<'s> Schedule<'s> {
                 _ => nodes.push((at, vec![happening])),
             }
         }
+        for (_, group) in &mut nodes {
+            group.sort_by_key(|happening| matches!(happening, Happening::Begins(_)));
+        }
         nodes.retain(|(at, _)| !before(end, *at));
         Self {
             scene,
@@ -76,6 +81,7 @@ impl<'s> Schedule<'s> {
                 time: 0.0,
             },
             steps: 0,
+            shown: 0.0,
             happenings: nodes.into_iter().peekable(),
             end,
         }
@@ -104,8 +110,7 @@ impl<'s> Schedule<'s> {
     /// The earliest of: the next event, the next display sample, the end, the longest stretch.
     fn target(&mut self) -> Node {
         let h = self.scene.step;
-        let tick = ticks(self.now.grid, h, self.scene.record.rate) + 1.0;
-        let due = grid_of_tick(tick, h, self.scene.record.rate).max(self.now.grid + 1);
+        let due = self.next_tick();
         let on_grid = due.min(self.now.grid + LONGEST_STRETCH);
         let mut target = Node {
             grid: on_grid,
@@ -120,6 +125,26 @@ impl<'s> Schedule<'s> {
             }
         }
         target
+    }
+
+    /// The grid node at which the derived streams are due next. [`ticks`] alone says which nodes
+    /// count a new instant; the division only finds the neighbourhood.
+    fn next_tick(&self) -> u64 {
+        let (h, rate) = (self.scene.step, self.scene.record.rate);
+        let counts = |grid: u64| ticks(grid, h, rate) > self.shown;
+        let first = self.now.grid + 1;
+        let mut due = grid_of_tick(self.shown + 1.0, h, rate).max(first);
+        while due > first && counts(due - 1) {
+            due -= 1;
+        }
+        // Within a node or two, by rounding; a rate beyond all counting has no next instant.
+        for _ in 0..4 {
+            if counts(due) {
+                break;
+            }
+            due = due.saturating_add(1);
+        }
+        due
     }
 
     fn step_towards(&mut self, target: Node) -> Step {
@@ -149,10 +174,11 @@ impl<'s> Schedule<'s> {
 
     fn mark(&mut self) -> Mark {
         let here = self.now;
-        let rate = self.scene.record.rate;
-        let previous = here.grid.saturating_sub(1);
-        let due = here.rest == 0.0
-            && ticks(here.grid, self.scene.step, rate) > ticks(previous, self.scene.step, rate);
+        let ticks = ticks(here.grid, self.scene.step, self.scene.record.rate);
+        let due = here.rest == 0.0 && ticks > self.shown;
+        if due {
+            self.shown = ticks;
+        }
         let display = due || !before(here, self.end);
         if let Some((_, happenings)) = self.happenings.next_if(|(at, _)| same(*at, here)) {
             return Mark::Events {

@@ -3,6 +3,7 @@
 use super::Jump;
 use crate::scene::{Action, Event, Scene};
 use crate::trace::{Note, NoteKind, Sample, Subject, short_vector};
+use nalgebra::Vector3;
 
 /// The begin or the end of an event, by its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +42,12 @@ pub fn after_start(scene: &Scene) -> Vec<(f64, Happening)> {
     all
 }
 
-pub fn begin_note(event: &Event, subject: &Subject, sample: &Sample, jump: Option<Jump>) -> Note {
+pub fn begin_note(
+    event: &Event,
+    subject: &Subject,
+    (tau_w, sample): (Vector3<f64>, &Sample),
+    jump: Option<Jump>,
+) -> Note {
     let what = format!("{} on {}", noun(&event.action), subject.name);
     let (text, kind) = match jump {
         Some(jump) => (
@@ -55,8 +61,8 @@ pub fn begin_note(event: &Event, subject: &Subject, sample: &Sample, jump: Optio
         ),
         None => (
             format!(
-                "{what} begins: τ = {} N·m, α = {} rad/s²",
-                short_vector(sample.tau_w),
+                "{what} begins: τ = {} N·m; the body's α = {} rad/s²",
+                short_vector(tau_w),
                 short_vector(sample.alpha_w)
             ),
             NoteKind::Begins,

@@ -32,6 +32,8 @@ pub struct Subject {
     pub pivot_b: Option<Vector3<f64>>,
     /// Where that point stays, world, m.
     pub pivot_w: Option<Vector3<f64>>,
+    /// Body axes x, y, z about which nothing turns it.
+    pub held: [bool; 3],
     /// Inertia about the reference point (the pivot, or else the centre of mass), body axes,
     /// kg m², over the axes that can move: a held axis counts nothing.
     pub inertia_b: Matrix3<f64>,

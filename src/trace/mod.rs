@@ -65,10 +65,19 @@ pub trait Sink {
 
 /// A number for people: six significant digits, no trailing zeros.
 pub fn short(x: f64) -> String {
+    digits(x, 6)
+}
+
+/// A number beside an arrow: four significant digits.
+pub fn brief(x: f64) -> String {
+    digits(x, 4)
+}
+
+fn digits(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{}", x + 0.0);
     }
-    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    let rounded: f64 = format!("{x:.*e}", digits - 1).parse().unwrap_or(x);
     if (1e-4..1e7).contains(&rounded.abs()) {
         format!("{rounded}")
     } else {
@@ -76,11 +85,11 @@ pub fn short(x: f64) -> String {
     }
 }
 
-/// Numbers that belong together, for people: those below 1e-12 of the largest are rounding and
-/// read 0.
+/// Numbers that belong together, for people: those below 1e-9 of the largest do not show
+/// among six digits of it and read 0.
 pub fn short_numbers(numbers: &[f64]) -> Vec<String> {
     let largest = numbers.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
-    let clean = |&x: &f64| if x.abs() <= 1e-12 * largest { 0.0 } else { x };
+    let clean = |&x: &f64| if x.abs() <= 1e-9 * largest { 0.0 } else { x };
     numbers.iter().map(|x| short(clean(x))).collect()
 }
 

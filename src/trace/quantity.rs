@@ -84,6 +84,15 @@ quantity!(
     |_, m, out| { vector(m.motion.velocity_w, out) }
 );
 quantity!(
+    VELOCITY_NORM,
+    "velocity_norm",
+    "|v|",
+    "m/s",
+    "–",
+    Scalar,
+    |_, m, out| out.push(m.motion.velocity_w.norm())
+);
+quantity!(
     OMEGA,
     "angular_velocity",
     "ω",

@@ -14,7 +14,12 @@ pub struct Stream {
 pub const STREAMS: &[Stream] = &[
     Stream {
         name: "state",
-        quantities: &[&q::POSITION, &q::ORIENTATION, &q::VELOCITY],
+        quantities: &[
+            &q::POSITION,
+            &q::ORIENTATION,
+            &q::VELOCITY,
+            &q::VELOCITY_NORM,
+        ],
         about: "the pose as numbers; the picture's pose is recorded always",
     },
     Stream {

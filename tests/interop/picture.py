@@ -41,7 +41,7 @@ def main():
         time.sleep(1)
     picture = Image.open(out).convert("RGB")
     picture = picture.resize((WIDTH, WIDTH * picture.height // picture.width), Image.Resampling.LANCZOS)
-    picture.quantize(192).save(out, optimize=True)
+    picture.save(out, optimize=True)
     print(f"{out}: {out.stat().st_size} bytes")
 
 

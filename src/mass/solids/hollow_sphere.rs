@@ -57,7 +57,7 @@ impl Solid for HollowSphere {
 
     fn volume(&self) -> Option<f64> {
         let a = self.inner?;
-        Some(4.0 / 3.0 * PI * (self.radius.powi(3) - a.powi(3)))
+        Some(4.0 / 3.0 * PI * (self.radius * self.radius * self.radius - a * a * a))
     }
 
     fn surface(&self) -> Surface {

@@ -25,7 +25,7 @@ impl Solid for Sphere {
     }
 
     fn volume(&self) -> Option<f64> {
-        Some(4.0 / 3.0 * PI * self.radius.powi(3))
+        Some(4.0 / 3.0 * PI * self.radius * self.radius * self.radius)
     }
 
     fn surface(&self) -> Surface {

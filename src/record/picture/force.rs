@@ -6,7 +6,7 @@ use super::super::look;
 use super::super::rrd::RrdFile;
 use super::vector::{Arrows, Labels};
 use super::{Drawn, Picture};
-use crate::trace::{Instant, Sample, Subject, short};
+use crate::trace::{Instant, Sample, Subject, brief};
 use rerun::archetypes::{Arrows3D, LineStrips3D};
 use rerun::components::Radius;
 
@@ -61,7 +61,7 @@ impl Picture for ForcePicture {
             let label = format!(
                 "{} {} {}",
                 self.drawn.symbol,
-                short(push.force_w.norm()),
+                brief(push.force_w.norm()),
                 self.drawn.unit
             );
             self.labels.push(push.point_w - arrow * 1.12, label);
@@ -75,15 +75,15 @@ impl Picture for ForcePicture {
     }
 
     fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
+        let times = std::mem::take(&mut self.times);
         let path = format!("/force/{}", subject.name);
         let ends = self.arrows.ends.clone();
-        file.columns(path.as_str(), &self.times, self.arrows.take())?;
-        file.columns(format!("{path}/label"), &self.times, self.labels.take())?;
+        file.columns(path.as_str(), &times, self.arrows.take())?;
+        file.columns(format!("{path}/label"), &times, self.labels.take())?;
         let arms = std::mem::take(&mut self.arms);
         let points = std::mem::take(&mut self.arm_points);
         let arms = strips(LineStrips3D::descriptor_strips(), arms, points, ends);
-        file.columns(format!("{path}/arm"), &self.times, vec![arms])?;
-        self.times.clear();
+        file.columns(format!("{path}/arm"), &times, vec![arms])?;
         Ok(())
     }
 }

@@ -10,7 +10,7 @@ use super::super::columns::{Column, Ends, Times, strips, texts, vectors};
 use super::super::look::{self, Colour};
 use super::super::rrd::RrdFile;
 use super::{Drawn, Picture};
-use crate::trace::{Instant, Sample, Subject, short};
+use crate::trace::{Instant, Sample, Subject, brief};
 use nalgebra::Vector3;
 use rerun::archetypes::{Arrows3D, CoordinateFrame, LineStrips3D, Points3D, Transform3D};
 use rerun::components::Radius;
@@ -145,9 +145,10 @@ impl VectorPicture {
         if self.turns.is_some() { 1.0 } else { 1.1 }
     }
 
+    /// Torque has a thin axis and a bold ring, so that an arrow along the same axis shows on it.
     fn radius(&self) -> Radius {
         Radius::new_ui_points(if self.turns.is_some() {
-            look::BOLD
+            look::THIN
         } else {
             look::MEDIUM
         })
@@ -206,10 +207,14 @@ impl Picture for VectorPicture {
             &[&here, &Labels::statics(self.drawn.colour)],
         )?;
         if self.turns.is_some() {
+            let bold = Radius::new_ui_points(look::BOLD);
             let ring = LineStrips3D::update_fields()
                 .with_colors([self.drawn.colour])
-                .with_radii([self.radius()]);
-            file.statics(format!("{path}/turn"), &[&here, &ring, &arrows])?;
+                .with_radii([bold]);
+            let head = Arrows3D::update_fields()
+                .with_colors([self.drawn.colour])
+                .with_radii([bold]);
+            file.statics(format!("{path}/turn"), &[&here, &ring, &head])?;
         }
         Ok(())
     }
@@ -224,7 +229,7 @@ impl Picture for VectorPicture {
             let label = format!(
                 "{} {} {}",
                 self.drawn.symbol,
-                short(length),
+                brief(length),
                 self.drawn.unit
             );
             self.labels.push(value * self.label_place(), label);
@@ -240,10 +245,11 @@ impl Picture for VectorPicture {
     }
 
     fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
+        let times = std::mem::take(&mut self.times);
         let path = self.path(subject);
         let arrows = self.arrows.take();
-        file.columns(path.as_str(), &self.times, arrows)?;
-        file.columns(format!("{path}/label"), &self.times, self.labels.take())?;
+        file.columns(path.as_str(), &times, arrows)?;
+        file.columns(format!("{path}/label"), &times, self.labels.take())?;
         if let Some(turns) = &mut self.turns {
             let Turns {
                 rings,
@@ -258,9 +264,8 @@ impl Picture for VectorPicture {
                 points,
                 ends,
             ));
-            file.columns(format!("{path}/turn"), &self.times, columns)?;
+            file.columns(format!("{path}/turn"), &times, columns)?;
         }
-        self.times.clear();
         Ok(())
     }
 }
