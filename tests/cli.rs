@@ -313,6 +313,30 @@ fn what_is_not_chosen_is_not_in_the_file() {
 }
 
 #[test]
+fn an_impulse_leaves_an_arrow_that_is_taken_away_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "duration = 2.0\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 1, 1]\n[[event]]\nat = 0.5\nbody = \"a\"\nimpulse = [0, 2, 0]\npoint = [0.5, 0, 0]\n";
+    std::fs::write(folder.path().join("s.toml"), scene).unwrap();
+    let output = torquescope(folder.path())
+        .args(["run", "s.toml"])
+        .output()
+        .unwrap();
+    assert!(
+        text(&output.stdout).contains("(0, 0, 1) N·m·s"),
+        "{}",
+        text(&output.stdout)
+    );
+    let bytes = std::fs::read(folder.path().join("s.rrd")).unwrap();
+    let path = b"/force/a/impulse";
+    let rows = bytes
+        .windows(path.len())
+        .filter(|window| window == path)
+        .count();
+    // The arrow and its removal are a chunk each, both named in the footer too.
+    assert!(rows >= 2, "{rows}");
+}
+
+#[test]
 fn the_lists_and_help() {
     for verb in ["methods", "effects", "streams", "solids"] {
         let output = torquescope(&root()).arg(verb).output().unwrap();

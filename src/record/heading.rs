@@ -19,6 +19,7 @@ pub struct Heading {
     /// Of those that last, s.
     pub shortest_event: Option<f64>,
     pub has_pushes: bool,
+    pub has_impulses: bool,
     pub streams: StreamSet,
     pub(super) scales: Scales,
 }
@@ -31,6 +32,7 @@ impl Heading {
             .map(|event| event.action.lasts())
             .filter(|&s| s > 0.0);
         let is_push = |action: &Action| matches!(action, Action::Push { .. });
+        let is_impulse = |action: &Action| matches!(action, Action::Impulse { .. });
         Self {
             title: scene.title.clone(),
             notes: scene.notes.clone(),
@@ -39,8 +41,14 @@ impl Heading {
             rate: scene.record.rate,
             shortest_event: lasting.min_by(f64::total_cmp),
             has_pushes: scene.events.iter().any(|event| is_push(&event.action)),
+            has_impulses: scene.events.iter().any(|event| is_impulse(&event.action)),
             streams: scene.record.streams,
             scales: Scales::new(simulation.subjects(), &simulation.expected()),
         }
+    }
+
+    /// How long the arrow of an impulse stays, s: a quarter of a second, less in a short scene.
+    pub fn impulse_shown_for(&self) -> f64 {
+        (self.duration / 8.0).min(0.25)
     }
 }

@@ -11,7 +11,7 @@ use super::mesh;
 use super::picture::DRAWN;
 use super::rrd::RrdFile;
 use super::scale;
-use crate::trace::Subject;
+use crate::trace::{Subject, short};
 use nalgebra::Vector3;
 use rerun::AsComponents;
 use rerun::archetypes::{Scalars, SeriesLines};
@@ -104,6 +104,13 @@ pub fn legend(setting: &Setting<'_>) -> String {
             let factor = heading.scales.sentence(drawn);
             text += &format!("- {} ({factor}){hidden}\n", drawn.meaning);
         }
+    }
+    if heading.streams.contains("force") && heading.has_impulses {
+        text += &format!(
+            "- **red arrow with J**: an impulse, shown where it struck for {} s after (1 N·s = {} m)\n",
+            short(heading.impulse_shown_for()),
+            short(heading.scales.impulse)
+        );
     }
     if heading.streams.contains("inertia") {
         text += "- **green ellipsoid**: uniform, with the body's mass and its inertia about the centre of mass (true size)\n";
@@ -252,7 +259,7 @@ fn spatial(
 ) -> Result<Part, RecordError> {
     let (centre, reach) = bounds(seen, setting.heading.scales.size);
     // From the front, from the right and above, so that arrows along any axis have a length.
-    let from = centre + Vector3::new(0.3, 0.5, 1.0).normalize() * (1.6 * reach);
+    let from = centre + Vector3::new(0.3, 0.5, 1.0).normalize() * (1.55 * reach);
     let point = |v: Vector3<f64>| components::Position3D::new(v.x as f32, v.y as f32, v.z as f32);
     let eye = ba::EyeControls3D::new()
         .with_kind(bc::Eye3DKind::Orbital)
@@ -288,7 +295,7 @@ fn bounds(seen: &[&Subject], size: f64) -> (Vector3<f64>, f64) {
         .fold(Vector3::repeat(f64::INFINITY), |a, b| a.inf(&b));
     let high = starts.fold(Vector3::repeat(f64::NEG_INFINITY), |a, b| a.sup(&b));
     let centre = (low + high) * 0.5;
-    let reach = 0.5 * (high - low).norm() + 2.6 * size;
+    let reach = 0.5 * (high - low).norm() + 3.2 * size;
     match centre.iter().all(|x| x.is_finite()) && reach.is_finite() {
         true => (centre, reach),
         false => (Vector3::zeros(), 5.0 * size),

@@ -7,7 +7,7 @@ use super::layout::{self, MOST_TABS, Setting};
 use super::look;
 use super::mesh;
 use super::page;
-use super::picture::{Picture, pictures};
+use super::picture::{Impulses, Picture, pictures};
 use super::rrd::{RrdFile, Store};
 use crate::trace::{
     Instant, Motion, Note, NoteKind, Quantity, Sample, Sink, SinkError, Subject, Track,
@@ -34,6 +34,8 @@ pub struct Recorder {
     bodies: Vec<BodyRecorder>,
     state_rows: usize,
     derived_rows: usize,
+    /// Where forces are recorded.
+    impulses: Option<Impulses>,
 }
 
 /// What was written.
@@ -81,6 +83,9 @@ impl Recorder {
             body.statics(&mut file, k, heading)?;
             bodies.push(body);
         }
+        let impulses = heading.streams.contains("force");
+        let impulses =
+            impulses.then(|| Impulses::new(&heading.scales, heading.impulse_shown_for()));
         let share = (BUFFERED_ROWS / subjects.len().max(1)).max(8);
         Ok(Self {
             path: path.to_owned(),
@@ -88,6 +93,7 @@ impl Recorder {
             bodies,
             state_rows: share.min(STATE_ROWS),
             derived_rows: share.min(DERIVED_ROWS),
+            impulses,
         })
     }
 
@@ -127,6 +133,9 @@ impl Sink for Recorder {
         bodies: Range<usize>,
         samples: &[Sample],
     ) -> Result<(), SinkError> {
+        if let Some(impulses) = &mut self.impulses {
+            impulses.clear(&mut self.file, (at, &timepoint(at)))?;
+        }
         for (body, sample) in self.bodies[bodies].iter_mut().zip(samples) {
             body.sample(at, sample);
             if body.times.len() >= self.derived_rows {
@@ -149,6 +158,9 @@ impl Sink for Recorder {
             .with_color(Color::from(colour));
         let when = timepoint(at);
         let subject = &self.bodies[note.body].subject;
+        if let (Some(impulses), Some(strike)) = (&mut self.impulses, note.strike) {
+            impulses.strike(&mut self.file, (at, when.clone()), subject, strike)?;
+        }
         let lane = format!("/events/{}", subject.name);
         let state = match note.kind {
             NoteKind::Begins => StateChange::single("acts"),

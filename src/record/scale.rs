@@ -9,11 +9,16 @@ use super::picture::{DRAWN, Drawn};
 use crate::sim::Sizes;
 use crate::trace::{Subject, short};
 
+/// Longest arrow of an impulse, in radii of a typical body.
+const IMPULSE_REACH: f64 = 1.6;
+
 /// Metres per unit of each quantity that is drawn.
 #[derive(Clone, Debug)]
 pub struct Scales {
     /// In the order of [`DRAWN`].
     factors: Vec<f64>,
+    /// Of an impulse, m per N·s.
+    pub impulse: f64,
     /// A typical body's radius, m: what the scales and the camera go by.
     pub size: f64,
 }
@@ -24,6 +29,7 @@ impl Scales {
         let factor = |drawn: &Drawn| nice(drawn.reach * size / (drawn.size)(expected));
         Self {
             factors: DRAWN.iter().map(factor).collect(),
+            impulse: nice(IMPULSE_REACH * size / expected.impulse),
             size,
         }
     }

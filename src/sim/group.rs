@@ -203,12 +203,15 @@ impl Group {
         let mut state = self.state.get(lane);
         let inertial = self.inertial.get(lane);
         let impulse_w = self.direction(lane, impulse).vector_w(&state);
-        let angular_w = match point {
+        let strike = point.map(|point| PointForce {
+            force_w: impulse_w,
+            point_w: self.point(lane, point).point_w(&state),
+        });
+        let angular_w = match strike {
             None => impulse_w,
-            Some(point) => {
+            Some(at) => {
                 state.v_w += impulse_w * inertial.inv_mass;
-                let arm_w = self.point(lane, point).point_w(&state) - state.x_w;
-                arm_w.cross(&impulse_w)
+                (at.point_w - state.x_w).cross(&impulse_w)
             }
         };
         let turn_w = inertial.angular_response(&state, angular_w);
@@ -217,6 +220,7 @@ impl Group {
         Jump {
             angular_impulse_w: angular_w,
             omega_w: turn_w,
+            strike,
         }
     }
 

@@ -10,7 +10,7 @@ pub use sizes::Sizes;
 use crate::body::LANES;
 use crate::scene::{Action, Scene};
 use crate::trace::{
-    Instant, Motion, Note, NoteKind, Sample, Sink, SinkError, Subject, Track, short,
+    Instant, Motion, Note, NoteKind, PointForce, Sample, Sink, SinkError, Subject, Track, short,
 };
 use group::Group;
 use nalgebra::Vector3;
@@ -57,6 +57,8 @@ pub struct Jump {
     pub angular_impulse_w: Vector3<f64>,
     /// Δω, rad/s.
     pub omega_w: Vector3<f64>,
+    /// The impulse (N·s in place of N) and where it struck; none for an angular impulse.
+    pub strike: Option<PointForce>,
 }
 
 /// Why a run stopped before its end.
@@ -104,7 +106,9 @@ impl<'s> Simulation<'s> {
         for (k, event) in self.scene.events.iter().enumerate() {
             let subject = &self.subjects[event.body];
             let mut group = self.group_of(event.body).clone();
-            begin(&mut group, self.scene, k);
+            if let Some(strike) = begin(&mut group, self.scene, k).and_then(|jump| jump.strike) {
+                sizes.count_impulse(strike.force_w.norm());
+            }
             group.load(self.scene, &[k]);
             sizes.count(
                 subject,
@@ -246,6 +250,7 @@ impl<'s> Simulation<'s> {
             body,
             text: error.to_string(),
             kind: NoteKind::Failure,
+            strike: None,
         };
         let written = sink
             .samples(at, 0..self.subjects.len(), &self.samples(at.time))

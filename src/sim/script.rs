@@ -72,6 +72,7 @@ pub fn begin_note(
         body: event.body,
         text,
         kind,
+        strike: jump.and_then(|jump| jump.strike),
     }
 }
 
@@ -82,6 +83,7 @@ pub fn end_note(event: &Event, subject: &Subject, sample: &Sample) -> Note {
         body: event.body,
         text: format!("{what} ends: ω = {omega} rad/s"),
         kind: NoteKind::Ends,
+        strike: None,
     }
 }
 

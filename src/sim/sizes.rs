@@ -7,6 +7,8 @@ use crate::trace::{Sample, Subject};
 pub struct Sizes {
     /// Of a push, N.
     pub force: f64,
+    /// Of an impulse, N·s.
+    pub impulse: f64,
     /// N·m.
     pub torque: f64,
     /// rad/s².
@@ -18,6 +20,12 @@ pub struct Sizes {
 }
 
 impl Sizes {
+    pub fn count_impulse(&mut self, size: f64) {
+        if size.is_finite() {
+            self.impulse = self.impulse.max(size);
+        }
+    }
+
     /// Counts a body as it is, and as it would be after `lasts` seconds of the same torque.
     pub fn count(&mut self, subject: &Subject, sample: &Sample, lasts: f64) {
         let (tau, alpha) = (sample.tau_w.norm(), sample.alpha_w.norm());

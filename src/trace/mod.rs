@@ -29,6 +29,8 @@ pub struct Note {
     pub body: usize,
     pub text: String,
     pub kind: NoteKind,
+    /// An impulse (N·s in place of N) and where it struck.
+    pub strike: Option<PointForce>,
 }
 
 /// What a note marks.

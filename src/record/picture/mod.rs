@@ -2,7 +2,10 @@
 //! pictures all read that table.
 
 mod force;
+mod impulse;
 mod vector;
+
+pub use impulse::Impulses;
 
 use super::RecordError;
 use super::look::{self, Colour};
