@@ -124,6 +124,28 @@ fn steady_rotations_are_steady() {
     }
 }
 
+#[test]
+fn nothing_is_lost_in_the_extremes() {
+    let moments = Vector3::new(1.0, 2.0, 3.0);
+    for a in [0.0, 1e-320, 1e-300, 1e-200, 1e-139, 1e-100] {
+        for b in [0.0, 1e-300, 1e-139, 1e-60] {
+            for scale in [1e-150, 1.0, 1e150] {
+                let omega = Vector3::new(a, 1.0, b) * scale;
+                let motion = FreeMotion::new(moments, Quaternion::identity(), omega);
+                for turns in [0.0, 0.3, 7.0] {
+                    let (q, w) = motion.at(turns / scale);
+                    assert!((q.norm() - 1.0).abs() < 1e-15 * 2.0, "{omega} {turns}: {q}");
+                    // So little beside the middle axis, so early: it still turns about that axis.
+                    assert!(
+                        (w / scale - Vector3::y()).norm() < 1e-15,
+                        "{omega} {turns}: {w}"
+                    );
+                }
+            }
+        }
+    }
+}
+
 /// `q(t) = exp(t L/2 I1) q0 exp(t (1 - I3/I1) ω3 e3/2)` for I1 = I2.
 #[test]
 fn the_axisymmetric_body() {

@@ -115,14 +115,17 @@ fn whole_turns_off(turns: Dd) -> (f64, f64) {
     (cos, sin)
 }
 
+/// Components of ω below this part of the largest have squares that underflow beside it.
+const VANISHING: f64 = 1e-140;
+
 fn kind(i: Vector3<f64>, q0: Quaternion<f64>, w: Vector3<f64>) -> Kind {
-    // dω/dt = 0: each product (I_j - I_k) ω_j ω_k has a factor that is zero.
-    let zero = |j: usize, k: usize| i[j] == i[k] || w[j] == 0.0 || w[k] == 0.0;
-    let steady = zero(1, 2) && zero(2, 0) && zero(0, 1);
     // Units of its own: moments and rates near 1, exactly, by powers of two.
     let scale_w = power_of_two(w.amax());
-    let (i, w) = (i / power_of_two(i.amax()), w / scale_w);
-    let kind = if steady {
+    let i = i / power_of_two(i.amax());
+    let w = (w / scale_w).map(|x| if x.abs() < VANISHING { 0.0 } else { x });
+    // dω/dt = 0: each product (I_j - I_k) ω_j ω_k has a factor that is zero.
+    let zero = |j: usize, k: usize| i[j] == i[k] || w[j] == 0.0 || w[k] == 0.0;
+    let kind = if zero(1, 2) && zero(2, 0) && zero(0, 1) {
         steady_rotation(q0, w)
     } else {
         Kind::Theta(Box::new(Theta::new(i, q0, w)))
