@@ -3,6 +3,9 @@
 //! A method is one scalar kernel in nalgebra terms, called for the eight lanes of a block in a
 //! loop that is compiled for the vector widths the processor has. A kernel has no branch on data.
 
+mod common;
+mod explicit_euler;
+mod lie_midpoint;
 mod rk4;
 mod semi_implicit;
 
@@ -34,7 +37,12 @@ pub trait Method: Sync {
 }
 
 /// Every method, in the order of the lists.
-pub const METHODS: &[&dyn Method] = &[&semi_implicit::SemiImplicit, &rk4::Rk4];
+pub const METHODS: &[&dyn Method] = &[
+    &semi_implicit::SemiImplicit,
+    &explicit_euler::ExplicitEuler,
+    &lie_midpoint::LieMidpoint,
+    &rk4::Rk4,
+];
 
 /// The method used where a scene names none: the most accurate of those that take every load.
 pub const DEFAULT_METHOD: &str = "rk4";

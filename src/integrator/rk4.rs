@@ -22,6 +22,7 @@
 //! Hairer, Nørsett & Wanner, Solving ODEs I, II.1; Lawson, SIAM J. Numer. Anal. 4 (1967).
 //! Neither energy nor momentum is kept exactly: both drift as h⁴.
 
+use super::common::{Rate, RateBlock, along, decayed, normalised};
 use super::{Method, MethodInfo};
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
 use crate::effect::{Load, Wrench, WrenchBlock};
@@ -89,10 +90,6 @@ enum Stage {
     Fourth,
 }
 
-/// A rate of change has the components of a state: x', v', q', ω'.
-type Rate = State;
-type RateBlock = StateBlock;
-
 #[inline(always)]
 fn rate_of(wrench: Wrench, inertial: &Inertial, s: State) -> Rate {
     Rate {
@@ -100,35 +97,6 @@ fn rate_of(wrench: Wrench, inertial: &Inertial, s: State) -> Rate {
         v_w: wrench.force_w * inertial.inv_mass,
         q_wp: spin_rate(s.omega_w, s.q_wp),
         omega_w: inertial.angular_response(&s, wrench.tau_w),
-    }
-}
-
-/// `y + h k`.
-#[inline(always)]
-fn along(y: State, h: f64, k: Rate) -> State {
-    State {
-        x_w: y.x_w + k.x_w * h,
-        v_w: y.v_w + k.v_w * h,
-        q_wp: y.q_wp + k.q_wp * h,
-        omega_w: y.omega_w + k.omega_w * h,
-    }
-}
-
-/// The velocities times a factor each; position and attitude do not decay.
-#[inline(always)]
-fn decayed(y: State, linear: f64, angular: f64) -> State {
-    State {
-        v_w: y.v_w * linear,
-        omega_w: y.omega_w * angular,
-        ..y
-    }
-}
-
-#[inline(always)]
-fn normalised(y: State) -> State {
-    State {
-        q_wp: y.q_wp * (1.0 / y.q_wp.norm()),
-        ..y
     }
 }
 

@@ -9,6 +9,7 @@
 //! With the gyroscopic effect the term enters explicitly, and energy grows.
 //! Degenerate cases: an inverse moment of 0 leaves that component of ω alone; ω = 0 leaves q alone.
 
+use super::common::damp;
 use super::{Method, MethodInfo};
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
 use crate::effect::{Load, Wrench, WrenchBlock};
@@ -35,7 +36,7 @@ impl Method for SemiImplicit {
         let wrench = load.wrench(t, inertial, state);
         lanes(h, &wrench, inertial, state);
         if let Some(decay) = load.decay() {
-            damp(decay.linear_factor(h), decay.angular_factor(h), state);
+            damp(decay, h, state);
         }
     }
 }
@@ -59,14 +60,5 @@ fn kernel(h: f64, wrench: Wrench, inertial: &Inertial, s: State) -> State {
         v_w,
         q_wp: q * (1.0 / q.norm()),
         omega_w,
-    }
-}
-
-fn damp(linear: f64, angular: f64, state: &mut StateBlock) {
-    for lane in 0..LANES {
-        let mut s = state.get(lane);
-        s.v_w *= linear;
-        s.omega_w *= angular;
-        state.set(lane, s);
     }
 }

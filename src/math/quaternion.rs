@@ -16,9 +16,28 @@ pub fn axis_angle(axis: Unit<Vector3<f64>>, radians: f64) -> UnitQuaternion<f64>
     UnitQuaternion::new_unchecked(Quaternion::from_parts(cos, axis.into_inner() * sin))
 }
 
+/// The rotation by a rotation vector (rad): `exp(v/2) = (v/|v| sin |v|/2, cos |v|/2)`.
+pub fn exponential(v: Vector3<f64>) -> Quaternion<f64> {
+    let half = 0.5 * v.norm();
+    let (sin, cos) = libm::sincos(half);
+    // sin(x)/2x of x = |v|/2; where |v| is too small to divide by, it is ½ to rounding.
+    let factor = if half > 1e-100 { 0.5 * sin / half } else { 0.5 };
+    Quaternion::from_parts(cos, v * factor)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_exponential_is_the_turn_about_its_axis() {
+        let axis = Unit::new_normalize(Vector3::new(0.3, -0.5, 0.8));
+        for angle in [0.0, 1e-200, 1e-9, 0.4, 3.1, 100.0] {
+            let gap = exponential(axis.into_inner() * angle) - *axis_angle(axis, angle);
+            // |axis · angle| is the angle but for a rounding of it.
+            assert!(gap.norm() < 3e-16 * (1.0 + angle), "{angle}");
+        }
+    }
 
     #[test]
     fn the_rate_turns_a_vector_as_omega_cross() {
