@@ -1,24 +1,12 @@
 //! Whole motions against closed forms, outside digits, and the same motion written differently.
 
+mod common;
+
+use common::Nowhere;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
-use std::ops::Range;
 use torquescope::scene::Scene;
 use torquescope::sim::{Outcome, Simulation};
-use torquescope::trace::{Instant, Note, Sample, Sink, SinkError, Subject, Track};
-
-struct Nowhere;
-
-impl Sink for Nowhere {
-    fn motions(&mut self, _: &Track<'_>) -> Result<(), SinkError> {
-        Ok(())
-    }
-    fn samples(&mut self, _: Instant, _: Range<usize>, _: &[Sample]) -> Result<(), SinkError> {
-        Ok(())
-    }
-    fn note(&mut self, _: Instant, _: &Note) -> Result<(), SinkError> {
-        Ok(())
-    }
-}
+use torquescope::trace::{Sample, Subject};
 
 fn run(source: &str) -> (Vec<Subject>, Outcome) {
     let scene = Scene::parse("inline", "inline", source).unwrap_or_else(|error| panic!("{error}"));

@@ -1,13 +1,14 @@
 //! Properties that hold for every body, attitude and push.
 
+mod common;
+
+use common::Nowhere;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;
-use std::ops::Range;
 use torquescope::body::{Inertial, State};
 use torquescope::mass::tensor::{check_physical, parallel_axis, turned};
 use torquescope::mass::{MassProperties, solids::SOLIDS};
 use torquescope::math::symmetric_eigen;
-use torquescope::trace::{Instant, Note, Sample, Sink, SinkError, Track};
 
 fn vector(size: f64) -> impl Strategy<Value = Vector3<f64>> {
     [-size..size, -size..size, -size..size].prop_map(Vector3::from)
@@ -44,20 +45,6 @@ fn at(inertial_q: UnitQuaternion<f64>, omega_w: Vector3<f64>) -> State {
         v_w: Vector3::zeros(),
         q_wp: inertial_q.into_inner(),
         omega_w,
-    }
-}
-
-struct Nowhere;
-
-impl Sink for Nowhere {
-    fn motions(&mut self, _: &Track<'_>) -> Result<(), SinkError> {
-        Ok(())
-    }
-    fn samples(&mut self, _: Instant, _: Range<usize>, _: &[Sample]) -> Result<(), SinkError> {
-        Ok(())
-    }
-    fn note(&mut self, _: Instant, _: &Note) -> Result<(), SinkError> {
-        Ok(())
     }
 }
 

@@ -1,7 +1,7 @@
 //! What several kernels share: states as vectors, damping after a step.
 
 use crate::body::{LANES, State, StateBlock};
-use crate::effect::Decay;
+use crate::effect::{Decay, Load};
 
 /// A rate of change has the components of a state: x', v', q', ω'.
 pub type Rate = State;
@@ -28,6 +28,23 @@ pub fn decayed(y: State, linear: f64, angular: f64) -> State {
     }
 }
 
+/// Factors over half a step on v and ω, for methods with an integrating factor.
+#[derive(Clone, Copy)]
+pub struct HalfDecay {
+    pub linear: f64,
+    pub angular: f64,
+}
+
+impl HalfDecay {
+    /// `None` where nothing decays.
+    pub fn of(load: &Load, half: f64) -> Option<Self> {
+        load.decay().map(|decay| Self {
+            linear: decay.linear_factor(half),
+            angular: decay.angular_factor(half),
+        })
+    }
+}
+
 /// The same state with an attitude of unit length.
 #[inline(always)]
 pub fn normalised(y: State) -> State {
@@ -37,7 +54,7 @@ pub fn normalised(y: State) -> State {
     }
 }
 
-/// Damps the velocities for `h` seconds, after a step.
+/// Damps the velocities for `h` seconds.
 pub fn damp(decay: &Decay, h: f64, state: &mut StateBlock) {
     let (linear, angular) = (decay.linear_factor(h), decay.angular_factor(h));
     for lane in 0..LANES {

@@ -12,7 +12,7 @@
 //!
 //! Hairer, Lubich & Wanner, Geometric Numerical Integration, IV.8 (Runge-Kutta-Munthe-Kaas, s = 2).
 
-use super::common::decayed;
+use super::common::{HalfDecay, damp, decayed};
 use super::{Method, MethodInfo};
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
 use crate::effect::{Load, Wrench, WrenchBlock};
@@ -30,13 +30,6 @@ const INFO: MethodInfo = MethodInfo {
     citation: "Hairer, Lubich & Wanner, Geometric Numerical Integration, IV.8; damping: Lawson 1967",
 };
 
-/// Factors over half a step on v and ω; 1 where nothing decays.
-#[derive(Clone, Copy)]
-struct HalfDecay {
-    linear: f64,
-    angular: f64,
-}
-
 impl Method for LieMidpoint {
     fn info(&self) -> &'static MethodInfo {
         &INFO
@@ -44,72 +37,33 @@ impl Method for LieMidpoint {
 
     fn step(&self, t: f64, h: f64, load: &Load, inertial: &InertialBlock, state: &mut StateBlock) {
         let half = 0.5 * h;
-        let decay = load.decay().map(|d| HalfDecay {
-            linear: d.linear_factor(half),
-            angular: d.angular_factor(half),
-        });
+        let decay = HalfDecay::of(load, half);
         let start = *state;
         let mut middle = start;
-        to_middle(
-            half,
-            decay,
-            &load.wrench(t, inertial, &start),
-            inertial,
-            &mut middle,
-        );
+        let wrench = load.wrench(t, inertial, &start);
+        advance(half, decay, &wrench, inertial, &start, &mut middle);
         let wrench = load.wrench(t + half, inertial, &middle);
-        across(h, decay, &wrench, inertial, &middle, state);
-    }
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn to_middle(
-    half: f64,
-    decay: Option<HalfDecay>,
-    wrench: &WrenchBlock,
-    inertial: &InertialBlock,
-    state: &mut StateBlock,
-) {
-    for lane in 0..LANES {
-        let s = state.get(lane);
-        let (v_w, omega_w) = accelerated(half, wrench.get(lane), &inertial.get(lane), &s, s);
-        let moved = State {
-            x_w: s.x_w + s.v_w * half,
-            v_w,
-            q_wp: exponential(s.omega_w * half) * s.q_wp,
-            omega_w,
-        };
-        let moved = match decay {
-            None => moved,
-            Some(e) => decayed(moved, e.linear, e.angular),
-        };
-        state.set(lane, moved);
-    }
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn across(
-    h: f64,
-    decay: Option<HalfDecay>,
-    wrench: &WrenchBlock,
-    inertial: &InertialBlock,
-    middle: &StateBlock,
-    state: &mut StateBlock,
-) {
-    for lane in 0..LANES {
-        let (s, m) = (state.get(lane), middle.get(lane));
         // E² y + h E k = E (E y + h k).
-        let from = match decay {
-            None => s,
-            Some(e) => decayed(s, e.linear, e.angular),
-        };
-        let (v_w, omega_w) = accelerated(h, wrench.get(lane), &inertial.get(lane), &m, from);
-        let moved = State {
-            x_w: s.x_w + m.v_w * h,
-            v_w,
-            q_wp: exponential(m.omega_w * h) * s.q_wp,
-            omega_w,
-        };
+        if let Some(decay) = load.decay() {
+            damp(decay, half, state);
+        }
+        advance(h, decay, &wrench, inertial, &middle, state);
+    }
+}
+
+/// Takes `state` `h` seconds on with the velocities and the wrench of `at`, then E.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn advance(
+    h: f64,
+    decay: Option<HalfDecay>,
+    wrench: &WrenchBlock,
+    inertial: &InertialBlock,
+    at: &StateBlock,
+    state: &mut StateBlock,
+) {
+    for lane in 0..LANES {
+        let (wrench, inertial) = (wrench.get(lane), inertial.get(lane));
+        let moved = kernel(h, wrench, &inertial, &at.get(lane), state.get(lane));
         let moved = match decay {
             None => moved,
             Some(e) => decayed(moved, e.linear, e.angular),
@@ -118,17 +72,12 @@ fn across(
     }
 }
 
-/// The velocities of `from` after `h` seconds of the wrench, at the attitude of `at`.
 #[inline(always)]
-fn accelerated(
-    h: f64,
-    wrench: Wrench,
-    inertial: &Inertial,
-    at: &State,
-    from: State,
-) -> (nalgebra::Vector3<f64>, nalgebra::Vector3<f64>) {
-    (
-        from.v_w + wrench.force_w * (inertial.inv_mass * h),
-        from.omega_w + inertial.angular_response(at, wrench.tau_w) * h,
-    )
+fn kernel(h: f64, wrench: Wrench, inertial: &Inertial, at: &State, s: State) -> State {
+    State {
+        x_w: s.x_w + at.v_w * h,
+        v_w: s.v_w + wrench.force_w * (inertial.inv_mass * h),
+        q_wp: exponential(at.omega_w * h) * s.q_wp,
+        omega_w: s.omega_w + inertial.angular_response(at, wrench.tau_w) * h,
+    }
 }

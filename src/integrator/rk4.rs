@@ -22,7 +22,7 @@
 //! Hairer, Nørsett & Wanner, Solving ODEs I, II.1; Lawson, SIAM J. Numer. Anal. 4 (1967).
 //! Neither energy nor momentum is kept exactly: both drift as h⁴.
 
-use super::common::{Rate, RateBlock, along, decayed, normalised};
+use super::common::{HalfDecay, Rate, RateBlock, along, decayed, normalised};
 use super::{Method, MethodInfo};
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
 use crate::effect::{Load, Wrench, WrenchBlock};
@@ -40,13 +40,6 @@ const INFO: MethodInfo = MethodInfo {
     citation: "Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, II.1; damping: Lawson 1967",
 };
 
-/// Factors over half a step on v and ω.
-#[derive(Clone, Copy)]
-struct HalfDecay {
-    linear: f64,
-    angular: f64,
-}
-
 impl Method for Rk4 {
     fn info(&self) -> &'static MethodInfo {
         &INFO
@@ -55,10 +48,7 @@ impl Method for Rk4 {
     fn step(&self, t: f64, h: f64, load: &Load, inertial: &InertialBlock, state: &mut StateBlock) {
         let half = 0.5 * h;
         let start = *state;
-        let decay = load.decay().map(|d| HalfDecay {
-            linear: d.linear_factor(half),
-            angular: d.angular_factor(half),
-        });
+        let decay = HalfDecay::of(load, half);
         let rate = |t: f64, at: &StateBlock| {
             let mut k = RateBlock::default();
             rates(&load.wrench(t, inertial, at), inertial, at, &mut k);

@@ -19,8 +19,6 @@ pub struct Constants {
     g2: Dd,
     /// Λ = λ π / 2K, 1/s.
     pub lambda: Dd,
-    /// AGM of √(B D3) and √(A D1).
-    lambda_dual: f64,
     k2: f64,
     /// Ω, the precession about L, 1/s.
     pub omega: Dd,
@@ -50,7 +48,6 @@ impl Constants {
         let k2 = (a * d1).to_f64() / (b * d3).to_f64();
         let f = Dd::to_f64;
         let t0 = branch.sigma * m[1].to_f64() * rf(f(c * d3 * s1), f(c * d1 * s3), f(d1 * d3));
-        let lambda_dual = agm((b * d3).sqrt(), (a * d1).sqrt(), Dd::ONE).0.to_f64();
         Self {
             a,
             b,
@@ -59,7 +56,6 @@ impl Constants {
             d3,
             g2,
             lambda,
-            lambda_dual,
             k2,
             omega,
             t0,
@@ -82,7 +78,9 @@ impl Constants {
                 epsilon,
             };
         }
-        let dual = self.lambda_dual;
+        // Λ': the AGM of √(B D3) and √(A D1).
+        let (start, end) = ((b * self.d3).sqrt(), (self.a * self.d1).sqrt());
+        let dual = agm(start, end, Dd::ONE).0.to_f64();
         let a0 = 0.5 * dual * t_a;
         if lambda == 0.0 {
             let rate = 0.5 * self.sigma * dual;
