@@ -91,7 +91,7 @@ impl Constants {
             };
         }
         Series::Complementary {
-            nome: libm::exp(-0.5 * PI * dual / lambda),
+            exponent: 0.5 * PI * dual / lambda,
             a0,
             y_per: 0.5 * dual / lambda,
             phase_per: dual * t_a / PI,

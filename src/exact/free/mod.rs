@@ -214,18 +214,18 @@ impl Theta {
                 nome_series(q, kappa, epsilon, nu, odd)
             }
             Series::Complementary {
-                nome,
+                exponent,
                 a0,
                 y_per,
                 phase_per,
             } => {
                 let (nu, odd) = self.phase(t);
-                let (alpha, beta) = complementary_series(nome, a0, y_per * nu, odd);
+                let (alpha, beta) = complementary_series(exponent, a0, y_per * nu, odd);
                 let (sin, cos) = libm::sincos(nu * phase_per);
                 (times(alpha, (cos, sin)), times(beta, (cos, sin)))
             }
             Series::Separatrix { a0, rate, y0 } => {
-                complementary_series(0.0, a0, rate * t + y0, false)
+                complementary_series(f64::INFINITY, a0, rate * t + y0, false)
             }
         };
         let square = |(re, im): (f64, f64)| re * re + im * im;

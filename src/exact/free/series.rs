@@ -6,8 +6,8 @@ pub enum Series {
     Nome { q: f64, kappa: f64, epsilon: f64 },
     /// In the complementary nome, for motions that come near the separatrix.
     Complementary {
-        /// Q'.
-        nome: f64,
+        /// -ln Q'.
+        exponent: f64,
         /// A0.
         a0: f64,
         /// y per ν: Λ'/2Λ.
@@ -54,10 +54,12 @@ pub fn nome_series(q: f64, kappa: f64, epsilon: f64, nu: f64, odd: bool) -> (Com
     (alpha, (br, bi))
 }
 
-/// α and β by the complementary nome, e^{|y|} taken out.
-pub fn complementary_series(nome: f64, a0: f64, y: f64, odd: bool) -> (Complex, Complex) {
+/// α and β by the complementary nome Q' = e^{-exponent}, e^{|y|} taken out; exponent ∞ on the
+/// separatrix, where one term is left.
+pub fn complementary_series(exponent: f64, a0: f64, y: f64, odd: bool) -> (Complex, Complex) {
     let (size, side) = (y.abs(), if y < 0.0 { -1.0 } else { 1.0 });
-    let grown = nome * libm::exp(2.0 * size);
+    // Q' e^{2|y|} by its exponent: apart, the one underflows where the other overflows.
+    let (nome, grown) = (libm::exp(-exponent), libm::exp(2.0 * size - exponent));
     let (mut ar, mut ai, mut br, mut bi) = (0.0, 0.0, 0.0, 0.0);
     for j in 0..=3_i32 {
         let s = f64::from(2 * j + 1);
