@@ -159,17 +159,18 @@ impl<'s> Simulation<'s> {
                     happenings,
                     display,
                 } => {
+                    let touched = self.touched(&happenings);
                     if display {
                         sink.samples(now, 0..self.subjects.len(), &self.samples(now.time))?;
                     } else {
-                        self.deliver_touched(now, &happenings, sink)?;
+                        self.deliver_bodies(now, &touched, sink)?;
                     }
                     let jumped = self.happen(now, &happenings, outcome, sink)?;
                     if jumped {
                         self.deliver_motions(now, sink)?;
                     }
-                    self.deliver_touched(now, &happenings, sink)?;
-                    self.must_be_finite(now, &self.touched(&happenings), sink)?;
+                    self.deliver_bodies(now, &touched, sink)?;
+                    self.must_be_finite(now, &touched, sink)?;
                 }
             }
         }
@@ -336,13 +337,13 @@ impl<'s> Simulation<'s> {
         bodies
     }
 
-    fn deliver_touched(
+    fn deliver_bodies(
         &self,
         now: Instant,
-        happenings: &[Happening],
+        bodies: &[usize],
         sink: &mut dyn Sink,
     ) -> Result<(), SinkError> {
-        for body in self.touched(happenings) {
+        for &body in bodies {
             let sample = self.group_of(body).sample(body, now.time);
             sink.samples(now, body..body + 1, &[sample])?;
         }
