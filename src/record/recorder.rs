@@ -134,7 +134,7 @@ impl Sink for Recorder {
         samples: &[Sample],
     ) -> Result<(), SinkError> {
         if let Some(impulses) = &mut self.impulses {
-            impulses.clear(&mut self.file, (at, &timepoint(at)))?;
+            impulses.clear(&mut self.file, at, || timepoint(at))?;
         }
         for (body, sample) in self.bodies[bodies].iter_mut().zip(samples) {
             body.sample(at, sample);

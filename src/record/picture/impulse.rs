@@ -61,19 +61,15 @@ impl Impulses {
     pub fn clear(
         &mut self,
         file: &mut RrdFile,
-        (at, when): (Instant, &TimePoint),
+        at: Instant,
+        when: impl Fn() -> TimePoint,
     ) -> Result<(), RecordError> {
         let none: [[f32; 3]; 0] = [];
         for (until, path) in &self.shown {
             if at.time >= *until {
                 let arrows = Arrows3D::from_vectors(none).with_origins(none);
                 let label = Points3D::new(none);
-                file.row(
-                    Store::Recording,
-                    path.as_str(),
-                    when.clone(),
-                    &[&arrows, &label],
-                )?;
+                file.row(Store::Recording, path.as_str(), when(), &[&arrows, &label])?;
             }
         }
         self.shown.retain(|(until, _)| at.time < *until);
