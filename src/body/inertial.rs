@@ -59,6 +59,26 @@ impl Inertial {
         let tau_p = state.to_principal(tau_w);
         state.to_world(self.inv_moments.component_mul(&tau_p))
     }
+
+    /// `I_w⁻¹ (τ_w - ω × I_w ω)`, rad/s², in principal axes throughout.
+    #[inline(always)]
+    pub fn gyroscopic_response(&self, state: &State, tau_w: Vector3<f64>) -> Vector3<f64> {
+        let tau_p = state.to_principal(tau_w) + self.gyroscopic_p(state);
+        state.to_world(self.inv_moments.component_mul(&tau_p))
+    }
+
+    /// The same without a torque: `-I_w⁻¹ (ω × I_w ω)`.
+    #[inline(always)]
+    pub fn gyroscopic_acceleration(&self, state: &State) -> Vector3<f64> {
+        state.to_world(self.inv_moments.component_mul(&self.gyroscopic_p(state)))
+    }
+
+    /// `-ω × I ω` in principal axes, N·m.
+    #[inline(always)]
+    fn gyroscopic_p(&self, state: &State) -> Vector3<f64> {
+        let omega_p = state.to_principal(state.omega_w);
+        self.moments.component_mul(&omega_p).cross(&omega_p)
+    }
 }
 
 /// Principal axes (columns, body coordinates), moments and inverse moments about `pivot_b`.

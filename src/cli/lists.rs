@@ -37,8 +37,8 @@ pub fn methods(arguments: &Arguments) -> anyhow::Result<()> {
             info.name.to_owned(),
             info.order.to_string(),
             info.preserves.to_owned(),
-            info.accepts.to_owned(),
-            info.damping.to_owned(),
+            info.accepts.describe().to_owned(),
+            info.damping.describe().to_owned(),
             info.citation.to_owned(),
         ]
         .to_vec()

@@ -1,6 +1,6 @@
 //! A pure torque on one body: a motor, or a couple of equal and opposite forces.
 
-use super::{Effect, Frame, WrenchBlock};
+use super::{Effect, Frame, Term, WrenchBlock};
 use crate::body::{InertialBlock, StateBlock};
 
 /// A torque on one lane of a block while it lasts.
@@ -15,5 +15,12 @@ impl Effect for Couple {
     fn add(&self, _t: f64, _: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {
         let tau_w = self.torque.vector_w(&state.get(self.lane));
         wrench.add_torque(self.lane, tau_w);
+    }
+
+    fn terms(&self, _: &InertialBlock) -> Option<Vec<Term>> {
+        Some(vec![Term::Torque {
+            lane: self.lane,
+            torque: self.torque,
+        }])
     }
 }

@@ -4,7 +4,7 @@
 //! nothing for a free body, the weight's lever arm for one held at a pivot. A body of infinite
 //! mass is not moved.
 
-use super::{Argument, Called, Effect, EffectKind, Value, WrenchBlock};
+use super::{Argument, Called, Effect, EffectKind, Frame, Term, Value, WrenchBlock};
 use crate::body::{InertialBlock, LANES, StateBlock};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -37,5 +37,17 @@ impl Effect for Gravity {
                 state.to_world(body.centre_p).cross(&weight_w),
             );
         }
+    }
+
+    fn terms(&self, inertial: &InertialBlock) -> Option<Vec<Term>> {
+        let weight = |lane: usize| {
+            let body = inertial.get(lane);
+            Term::Force {
+                lane,
+                force: Frame::World(self.g_w * body.mass),
+                point: Frame::Principal(body.centre_p),
+            }
+        };
+        Some((0..LANES).map(weight).collect())
     }
 }

@@ -1,6 +1,6 @@
-//! Everything that acts on one block of bodies, between two events.
+//! The model and everything that acts on one block of bodies, between two events.
 
-use super::{Decay, Effect};
+use super::{Decay, Depends, Effect, Term};
 use crate::body::{InertialBlock, State, StateBlock, Vector3Lanes};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -40,9 +40,10 @@ impl WrenchBlock {
     }
 }
 
-/// The effects present on one block. Empty where nothing acts.
+/// What moves one block of bodies: which model, and the effects present. Empty where nothing acts.
 #[derive(Clone, Debug, Default)]
 pub struct Load {
+    gyroscopic: bool,
     effects: Vec<Arc<dyn Effect>>,
     decay: Option<Decay>,
 }
@@ -56,9 +57,19 @@ impl Load {
         self.decay = Some(decay);
     }
 
-    /// Whether an effect is there that only the choice of coordinates brings.
-    pub fn has_inertial(&self) -> bool {
-        self.effects.iter().any(|effect| effect.is_inertial())
+    pub fn set_gyroscopic(&mut self) {
+        self.gyroscopic = true;
+    }
+
+    /// Whether bodies keep their angular momentum (Euler's equations) and not, as in the
+    /// tutorial's model, their angular velocity.
+    pub fn gyroscopic(&self) -> bool {
+        self.gyroscopic
+    }
+
+    /// Whether any force or torque is applied.
+    pub fn applies(&self) -> bool {
+        !self.effects.is_empty()
     }
 
     /// Exponential decay of the velocities, where the scene has it.
@@ -66,28 +77,35 @@ impl Load {
         self.decay.as_ref()
     }
 
-    /// The sum of all effects, summed in the order they were added.
-    pub fn wrench(&self, t: f64, inertial: &InertialBlock, state: &StateBlock) -> WrenchBlock {
-        self.sum(t, inertial, state, |_| true)
-    }
-
-    /// The sum of the effects that something applies: without inertial ones, without decay.
-    pub fn applied(&self, t: f64, inertial: &InertialBlock, state: &StateBlock) -> WrenchBlock {
-        self.sum(t, inertial, state, |effect| !effect.is_inertial())
-    }
-
-    fn sum(
+    /// The sum of what is applied, in the order the effects were added: without the gyroscopic
+    /// term, without decay. `None` where nothing is.
+    pub fn wrench(
         &self,
         t: f64,
         inertial: &InertialBlock,
         state: &StateBlock,
-        keep: impl Fn(&dyn Effect) -> bool,
-    ) -> WrenchBlock {
+    ) -> Option<WrenchBlock> {
+        if self.effects.is_empty() {
+            return None;
+        }
         let mut wrench = WrenchBlock::default();
-        for effect in self.effects.iter().filter(|effect| keep(effect.as_ref())) {
+        for effect in &self.effects {
             effect.add(t, inertial, state, &mut wrench);
         }
-        wrench
+        Some(wrench)
+    }
+
+    /// What the applied forces and torques depend on.
+    pub fn depends(&self, inertial: &InertialBlock) -> Depends {
+        let each = self.effects.iter().map(|effect| effect.depends(inertial));
+        each.collect()
+    }
+
+    /// All effects as constant forces and torques, where they are nothing else.
+    pub fn terms(&self, inertial: &InertialBlock) -> Option<Vec<Term>> {
+        let each = self.effects.iter().map(|effect| effect.terms(inertial));
+        let terms: Option<Vec<Vec<Term>>> = each.collect();
+        Some(terms?.concat())
     }
 }
 

@@ -9,11 +9,13 @@ mod gravity;
 mod gyroscopic;
 mod load;
 mod push;
+mod term;
 
 pub use couple::Couple;
 pub use damping::Decay;
 pub use load::{Frame, Load, Wrench, WrenchBlock};
 pub use push::Push;
+pub use term::{Depends, Term};
 
 use crate::body::{InertialBlock, StateBlock};
 use nalgebra::Vector3;
@@ -26,10 +28,20 @@ pub trait Effect: Debug + Send + Sync {
     /// at time `t` (s) and the given states.
     fn add(&self, t: f64, inertial: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock);
 
-    /// True for what the choice of coordinates brings, such as `-ω × I ω`: it turns bodies but
-    /// nothing outside applies it, so the torque stream leaves it out.
-    fn is_inertial(&self) -> bool {
-        false
+    /// The effect as constant forces at points and constant torques, where it is nothing else: what
+    /// methods with recurrences of their own take it from.
+    fn terms(&self, inertial: &InertialBlock) -> Option<Vec<Term>> {
+        let _ = inertial;
+        None
+    }
+
+    /// What it depends on: methods that would lose their order by it are refused. An effect that
+    /// does not say is taken to depend on everything.
+    fn depends(&self, inertial: &InertialBlock) -> Depends {
+        match self.terms(inertial) {
+            Some(terms) => terms.iter().map(Term::depends).collect(),
+            None => Depends::EVERYTHING,
+        }
     }
 }
 
@@ -38,6 +50,8 @@ pub trait Effect: Debug + Send + Sync {
 pub enum Called {
     /// A force or torque, on every body.
     Load(Arc<dyn Effect>),
+    /// Euler's equations in place of the tutorial's model.
+    Gyroscopic,
     /// Exponential decay of the velocities, on every body.
     Decay(Decay),
     /// Named, but switched off.

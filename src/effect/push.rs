@@ -1,6 +1,6 @@
 //! A force at a point of one body: `F`, and the torque `(p - x) × F` about its reference point x.
 
-use super::{Effect, Frame, WrenchBlock};
+use super::{Effect, Frame, Term, WrenchBlock};
 use crate::body::{InertialBlock, StateBlock};
 
 /// A force on one lane of a block while it lasts.
@@ -19,5 +19,13 @@ impl Effect for Push {
         let force_w = self.force.vector_w(&state);
         let arm_w = self.point.point_w(&state) - state.x_w;
         wrench.add(self.lane, force_w, arm_w.cross(&force_w));
+    }
+
+    fn terms(&self, _: &InertialBlock) -> Option<Vec<Term>> {
+        Some(vec![Term::Force {
+            lane: self.lane,
+            force: self.force,
+            point: self.point,
+        }])
     }
 }

@@ -1,11 +1,72 @@
-//! What several kernels share: states as vectors, damping after a step.
+//! What several kernels share: states as vectors, accelerations, damping.
 
-use crate::body::{LANES, State, StateBlock};
-use crate::effect::{Decay, Load};
+use crate::body::{Inertial, LANES, State, StateBlock};
+use crate::effect::{Decay, Load, WrenchBlock};
+use nalgebra::Vector3;
 
 /// A rate of change has the components of a state: x', v', q', ω'.
 pub type Rate = State;
 pub type RateBlock = StateBlock;
+
+/// What a body's velocities change by, world, m/s² and rad/s².
+#[derive(Clone, Copy, Debug)]
+pub struct Acceleration {
+    pub a_w: Vector3<f64>,
+    pub alpha_w: Vector3<f64>,
+}
+
+/// Where a kernel takes accelerations from. A type, so that a block on which nothing acts runs a
+/// loop that has never heard of forces.
+pub trait Forces: Copy {
+    fn acceleration(self, lane: usize, body: &Inertial, s: &State) -> Acceleration;
+}
+
+/// Nothing is applied. `GYROSCOPIC`: angular momentum stays, else angular velocity.
+#[derive(Clone, Copy)]
+pub struct Coasting<const GYROSCOPIC: bool>;
+
+/// These forces and torques are applied.
+#[derive(Clone, Copy)]
+pub struct Applied<'w, const GYROSCOPIC: bool>(pub &'w WrenchBlock);
+
+impl<const GYROSCOPIC: bool> Forces for Coasting<GYROSCOPIC> {
+    #[inline(always)]
+    fn acceleration(self, _: usize, body: &Inertial, s: &State) -> Acceleration {
+        Acceleration {
+            a_w: Vector3::zeros(),
+            alpha_w: match GYROSCOPIC {
+                true => body.gyroscopic_acceleration(s),
+                false => Vector3::zeros(),
+            },
+        }
+    }
+}
+
+impl<const GYROSCOPIC: bool> Forces for Applied<'_, GYROSCOPIC> {
+    #[inline(always)]
+    fn acceleration(self, lane: usize, body: &Inertial, s: &State) -> Acceleration {
+        let wrench = self.0.get(lane);
+        Acceleration {
+            a_w: wrench.force_w * body.inv_mass,
+            alpha_w: match GYROSCOPIC {
+                true => body.gyroscopic_response(s, wrench.tau_w),
+                false => body.angular_response(s, wrench.tau_w),
+            },
+        }
+    }
+}
+
+/// `y' = f(t, y)` of a body under these forces.
+#[inline(always)]
+pub fn rate(lane: usize, forces: impl Forces, body: &Inertial, s: State) -> Rate {
+    let Acceleration { a_w, alpha_w } = forces.acceleration(lane, body, &s);
+    Rate {
+        x_w: s.v_w,
+        v_w: a_w,
+        q_wp: crate::math::spin_rate(s.omega_w, s.q_wp),
+        omega_w: alpha_w,
+    }
+}
 
 /// `y + h k`.
 #[inline(always)]
@@ -61,3 +122,29 @@ pub fn damp(decay: &Decay, h: f64, state: &mut StateBlock) {
         state.set(lane, decayed(state.get(lane), linear, angular));
     }
 }
+
+/// Calls a kernel with the [`Forces`] that a load has at one time and state: `wrench` is an
+/// `Option<&WrenchBlock>`.
+macro_rules! with_forces {
+    ($load:expr, $wrench:expr, |$forces:ident| $work:expr) => {
+        match ($wrench, $load.gyroscopic()) {
+            (None, false) => {
+                let $forces = $crate::integrator::common::Coasting::<false>;
+                $work
+            }
+            (None, true) => {
+                let $forces = $crate::integrator::common::Coasting::<true>;
+                $work
+            }
+            (Some(wrench), false) => {
+                let $forces = $crate::integrator::common::Applied::<false>(wrench);
+                $work
+            }
+            (Some(wrench), true) => {
+                let $forces = $crate::integrator::common::Applied::<true>(wrench);
+                $work
+            }
+        }
+    };
+}
+pub(super) use with_forces;

@@ -12,58 +12,78 @@
 //!
 //! Hairer, Lubich & Wanner, Geometric Numerical Integration, IV.8 (Runge-Kutta-Munthe-Kaas, s = 2).
 
-use super::common::{HalfDecay, damp, decayed};
-use super::{Method, MethodInfo};
-use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
-use crate::effect::{Load, Wrench, WrenchBlock};
+use super::common::{Acceleration, Forces, HalfDecay, damp, decayed, with_forces};
+use super::one_step::OneStep;
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo};
+use crate::body::{InertialBlock, LANES, State, StateBlock};
 use crate::math::exponential;
 use multiversion::multiversion;
 
+#[derive(Clone, Copy)]
 pub struct LieMidpoint;
 
 const INFO: MethodInfo = MethodInfo {
     name: "lie-midpoint",
+    engines: &[],
+    kind: Kind::Fixed,
     order: 2,
+    accepts: Accepts::Any,
+    damping: Damping::Exact("integrating factor: exact by itself, order 2 with torques"),
+    reversible: false,
+    keeps_momentum: false,
     preserves: "|q| by construction; rotation at constant ω exactly",
-    accepts: "any",
-    damping: "integrating factor: exact by itself, order 2 with torques",
+    cost: Cost {
+        evaluations: 2,
+        weight: 1.4,
+    },
     citation: "Hairer, Lubich & Wanner, Geometric Numerical Integration, IV.8; damping: Lawson 1967",
 };
 
-impl Method for LieMidpoint {
+impl OneStep for LieMidpoint {
     fn info(&self) -> &'static MethodInfo {
         &INFO
     }
 
-    fn step(&self, t: f64, h: f64, load: &Load, inertial: &InertialBlock, state: &mut StateBlock) {
+    fn step(&self, t: f64, h: f64, interval: &Interval, state: &mut StateBlock) {
+        let (load, inertial) = (&interval.load, &interval.inertial);
         let half = 0.5 * h;
         let decay = HalfDecay::of(load, half);
         let start = *state;
         let mut middle = start;
         let wrench = load.wrench(t, inertial, &start);
-        advance(half, decay, &wrench, inertial, &start, &mut middle);
+        with_forces!(load, wrench.as_ref(), |forces| advance(
+            half,
+            decay,
+            forces,
+            inertial,
+            &start,
+            &mut middle
+        ));
         let wrench = load.wrench(t + half, inertial, &middle);
         // E² y + h E k = E (E y + h k).
         if let Some(decay) = load.decay() {
             damp(decay, half, state);
         }
-        advance(h, decay, &wrench, inertial, &middle, state);
+        with_forces!(load, wrench.as_ref(), |forces| advance(
+            h, decay, forces, inertial, &middle, state
+        ));
     }
 }
 
-/// Takes `state` `h` seconds on with the velocities and the wrench of `at`, then E.
+/// Takes `state` `h` seconds on with the velocities and accelerations of `at`, then E.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn advance(
+fn advance<F: Forces>(
     h: f64,
     decay: Option<HalfDecay>,
-    wrench: &WrenchBlock,
+    forces: F,
     inertial: &InertialBlock,
     at: &StateBlock,
     state: &mut StateBlock,
 ) {
     for lane in 0..LANES {
-        let (wrench, inertial) = (wrench.get(lane), inertial.get(lane));
-        let moved = kernel(h, wrench, &inertial, &at.get(lane), state.get(lane));
+        let at = at.get(lane);
+        let acceleration = forces.acceleration(lane, &inertial.get(lane), &at);
+        let moved = kernel(h, acceleration, &at, state.get(lane));
         let moved = match decay {
             None => moved,
             Some(e) => decayed(moved, e.linear, e.angular),
@@ -73,11 +93,11 @@ fn advance(
 }
 
 #[inline(always)]
-fn kernel(h: f64, wrench: Wrench, inertial: &Inertial, at: &State, s: State) -> State {
+fn kernel(h: f64, acceleration: Acceleration, at: &State, s: State) -> State {
     State {
         x_w: s.x_w + at.v_w * h,
-        v_w: s.v_w + wrench.force_w * (inertial.inv_mass * h),
+        v_w: s.v_w + acceleration.a_w * h,
         q_wp: exponential(at.omega_w * h) * s.q_wp,
-        omega_w: s.omega_w + inertial.angular_response(at, wrench.tau_w) * h,
+        omega_w: s.omega_w + acceleration.alpha_w * h,
     }
 }

@@ -1,55 +1,120 @@
 //! Level 3: methods that advance bodies in time. One file each, one line in [`METHODS`].
 //!
-//! A method is one scalar kernel in nalgebra terms, called for the eight lanes of a block in a
-//! loop that is compiled for the vector widths the processor has. A kernel has no branch on data.
+//! A method sets out from a state under a load that stays ([`Method::start`]) and from then on is
+//! asked for the states after some steps ([`Stepper::advance`]). What it prepares once, or carries
+//! from step to step beside the state (a closed form's constants, a step size, a momentum), is its
+//! own. A plain one-step method is a [`OneStep`]: a function from state to state.
+//!
+//! A kernel is written for one body in nalgebra's terms and called for the eight lanes of a block
+//! in a loop that is compiled for the vector widths the processor has.
 
 mod common;
 mod explicit_euler;
+mod info;
 mod lie_midpoint;
+mod one_step;
 mod rk4;
 mod semi_implicit;
 
+pub use info::{Accepts, Cost, Damping, Kind, MethodInfo, Refusal};
+
 use crate::body::{InertialBlock, StateBlock};
 use crate::effect::Load;
+use one_step::Stepped;
 
-/// What a method promises and where it comes from.
-#[derive(Clone, Copy, Debug)]
-pub struct MethodInfo {
-    /// As scenes and the command line name it.
-    pub name: &'static str,
-    /// Global order of accuracy in attitude, for smooth forces.
-    pub order: u32,
-    /// What it keeps for ever, to rounding.
-    pub preserves: &'static str,
-    /// Which torques it accepts.
-    pub accepts: &'static str,
-    /// How damping enters.
-    pub damping: &'static str,
-    pub citation: &'static str,
+/// A stretch of time in which nothing begins, ends or jumps.
+#[derive(Clone, Debug)]
+pub struct Interval {
+    pub load: Load,
+    pub inertial: InertialBlock,
+    /// Bodies in the block; the lanes beyond are empty.
+    pub bodies: usize,
+    /// When it ends, s. A method may look ahead as far as this.
+    pub until: f64,
+    /// Error allowed by a method that chooses its own steps, relative to the state.
+    pub tolerance: f64,
 }
 
-/// A one-step method.
+/// One step of the clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// s.
+    pub from: f64,
+    /// s.
+    pub h: f64,
+    /// Where it ends, s: `from + h`, but without its rounding.
+    pub to: f64,
+    /// Whether the state at its end is asked for.
+    pub keep: bool,
+}
+
+/// What was done so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Steps of the method itself.
+    pub steps: u64,
+    /// Times the equations of motion were evaluated, a block counting once.
+    pub evaluations: u64,
+}
+
+impl std::ops::Add for Work {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            steps: self.steps + other.steps,
+            evaluations: self.evaluations + other.evaluations,
+        }
+    }
+}
+
+/// A way to advance bodies.
 pub trait Method: Sync {
     fn info(&self) -> &'static MethodInfo;
 
-    /// Advances a block from `t` to `t + h` (s) under `load`.
-    fn step(&self, t: f64, h: f64, load: &Load, inertial: &InertialBlock, state: &mut StateBlock);
+    /// Sets out from `state` at time `t` (s). The load must be one that
+    /// [`MethodInfo::refuses`] accepts.
+    fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper>;
+}
+
+/// A method on its way through an interval.
+pub trait Stepper: Send {
+    /// Takes the steps, in order and without a gap from the last; appends the state after each
+    /// that is kept.
+    fn advance(&mut self, steps: &[Step], kept: &mut Vec<StateBlock>);
+
+    /// Where it is: at the end of the last step.
+    fn state(&self) -> StateBlock;
+
+    fn work(&self) -> Work;
+
+    fn boxed_clone(&self) -> Box<dyn Stepper>;
+}
+
+impl Clone for Box<dyn Stepper> {
+    fn clone(&self) -> Self {
+        self.boxed_clone()
+    }
 }
 
 /// Every method, in the order of the lists.
 pub const METHODS: &[&dyn Method] = &[
-    &semi_implicit::SemiImplicit,
-    &explicit_euler::ExplicitEuler,
-    &lie_midpoint::LieMidpoint,
-    &rk4::Rk4,
+    &Stepped(semi_implicit::SemiImplicit),
+    &Stepped(explicit_euler::ExplicitEuler),
+    &Stepped(lie_midpoint::LieMidpoint),
+    &Stepped(rk4::Rk4),
 ];
 
 /// The method used where a scene names none: the most accurate of those that take every load.
 pub const DEFAULT_METHOD: &str = "rk4";
 
-/// The method of that name.
+/// The method of that name, or by which an engine's name is known.
 pub fn find(name: &str) -> Option<&'static dyn Method> {
-    METHODS.iter().copied().find(|m| m.info().name == name)
+    let named = |method: &&dyn Method| {
+        let info = method.info();
+        info.name == name || info.engines.contains(&name)
+    };
+    METHODS.iter().copied().find(named)
 }
 
 #[cfg(test)]

@@ -9,32 +9,44 @@
 //! With the gyroscopic effect the term enters explicitly, and energy grows.
 //! Degenerate cases: an inverse moment of 0 leaves that component of ω alone; ω = 0 leaves q alone.
 
-use super::common::damp;
-use super::{Method, MethodInfo};
-use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
-use crate::effect::{Load, Wrench, WrenchBlock};
+use super::common::{Acceleration, Forces, damp, with_forces};
+use super::one_step::OneStep;
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo};
+use crate::body::{InertialBlock, LANES, State, StateBlock};
 use crate::math::spin_rate;
 use multiversion::multiversion;
 
+#[derive(Clone, Copy)]
 pub struct SemiImplicit;
 
 const INFO: MethodInfo = MethodInfo {
     name: "semi-implicit",
+    engines: &[],
+    kind: Kind::Fixed,
     order: 1,
+    accepts: Accepts::Any,
+    damping: Damping::Exact("after the step, exact factor"),
+    reversible: false,
+    keeps_momentum: false,
     preserves: "angular velocity where no torque acts and the gyroscopic term is absent",
-    accepts: "any",
-    damping: "after the step, exact factor",
+    cost: Cost {
+        evaluations: 1,
+        weight: 0.3,
+    },
     citation: "the tutorial; symplectic Euler: Hairer, Lubich & Wanner, Geometric Numerical Integration, I.1.2",
 };
 
-impl Method for SemiImplicit {
+impl OneStep for SemiImplicit {
     fn info(&self) -> &'static MethodInfo {
         &INFO
     }
 
-    fn step(&self, t: f64, h: f64, load: &Load, inertial: &InertialBlock, state: &mut StateBlock) {
+    fn step(&self, t: f64, h: f64, interval: &Interval, state: &mut StateBlock) {
+        let (load, inertial) = (&interval.load, &interval.inertial);
         let wrench = load.wrench(t, inertial, state);
-        lanes(h, &wrench, inertial, state);
+        with_forces!(load, wrench.as_ref(), |forces| lanes(
+            h, forces, inertial, state
+        ));
         if let Some(decay) = load.decay() {
             damp(decay, h, state);
         }
@@ -42,19 +54,19 @@ impl Method for SemiImplicit {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn lanes(h: f64, wrench: &WrenchBlock, inertial: &InertialBlock, state: &mut StateBlock) {
+fn lanes<F: Forces>(h: f64, forces: F, inertial: &InertialBlock, state: &mut StateBlock) {
     for lane in 0..LANES {
-        let next = kernel(h, wrench.get(lane), &inertial.get(lane), state.get(lane));
-        state.set(lane, next);
+        let s = state.get(lane);
+        let acceleration = forces.acceleration(lane, &inertial.get(lane), &s);
+        state.set(lane, kernel(h, acceleration, s));
     }
 }
 
 #[inline(always)]
-fn kernel(h: f64, wrench: Wrench, inertial: &Inertial, s: State) -> State {
-    let alpha_w = inertial.angular_response(&s, wrench.tau_w);
-    let omega_w = s.omega_w + alpha_w * h;
+fn kernel(h: f64, acceleration: Acceleration, s: State) -> State {
+    let omega_w = s.omega_w + acceleration.alpha_w * h;
     let q = s.q_wp + spin_rate(omega_w, s.q_wp) * h;
-    let v_w = s.v_w + wrench.force_w * (inertial.inv_mass * h);
+    let v_w = s.v_w + acceleration.a_w * h;
     State {
         x_w: s.x_w + v_w * h,
         v_w,

@@ -13,6 +13,7 @@ fn effect(name: &str, value: Value, load: &mut Load) {
     match (kind.make)(&value, 1.0).unwrap() {
         Called::Load(effect) => load.push(effect),
         Called::Decay(decay) => load.set_decay(decay),
+        Called::Gyroscopic => load.set_gyroscopic(),
         Called::Off => panic!("{name} is off"),
     }
 }
@@ -50,6 +51,39 @@ fn spinning(q: UnitQuaternion<f64>, omega_w: Vector3<f64>) -> State {
     }
 }
 
+/// `n` equal steps to `t`.
+fn steps(t: f64, n: u32) -> Vec<Step> {
+    let h = t / f64::from(n);
+    let step = |k: u32| Step {
+        from: f64::from(k) * h,
+        h,
+        to: f64::from(k + 1) * h,
+        keep: false,
+    };
+    (0..n).map(step).collect()
+}
+
+fn interval(load: &Load, inertial: InertialBlock, until: f64) -> Interval {
+    Interval {
+        load: load.clone(),
+        inertial,
+        bodies: 1,
+        until,
+        tolerance: 1e-15,
+    }
+}
+
+fn advance_block(
+    method: &dyn Method,
+    interval: Interval,
+    state: &StateBlock,
+    steps: &[Step],
+) -> StateBlock {
+    let mut stepper = method.start(interval, 0.0, state);
+    stepper.advance(steps, &mut Vec::new());
+    stepper.state()
+}
+
 fn advance(
     method: &dyn Method,
     load: &Load,
@@ -57,12 +91,8 @@ fn advance(
     t: f64,
     n: u32,
 ) -> State {
-    let h = t / f64::from(n);
-    let mut state = bodies.1;
-    for k in 0..n {
-        method.step(f64::from(k) * h, h, load, &bodies.0, &mut state);
-    }
-    state.get(0)
+    let interval = interval(load, bodies.0, t);
+    advance_block(method, interval, &bodies.1, &steps(t, n)).get(0)
 }
 
 /// Angle between two attitudes, rad.
@@ -369,27 +399,16 @@ fn a_block_gives_every_body_the_bits_it_would_have_alone() {
             inertials.set(lane, alone(lane).0.get(0));
             states.set(lane, alone(lane).1.get(0));
         }
-        for k in 0..100 {
-            method.step(f64::from(k) * 0.01, 0.01, &load, &inertials, &mut states);
-        }
+        let all = Interval {
+            bodies: crate::body::LANES,
+            ..interval(&load, inertials, 1.0)
+        };
+        let states = advance_block(*method, all, &states, &steps(1.0, 100));
         for lane in 0..crate::body::LANES {
-            let lone = advance_with(*method, &load, alone(lane), 0.01, 100);
+            let lone = advance(*method, &load, &alone(lane), 1.0, 100);
             assert_eq!(states.get(lane), lone, "{} lane {lane}", method.info().name);
         }
     }
-}
-
-fn advance_with(
-    method: &dyn Method,
-    load: &Load,
-    mut bodies: (InertialBlock, StateBlock),
-    h: f64,
-    n: u32,
-) -> State {
-    for k in 0..n {
-        method.step(f64::from(k) * h, h, load, &bodies.0, &mut bodies.1);
-    }
-    bodies.1.get(0)
 }
 
 /// A spring to the origin, N/m per kg.

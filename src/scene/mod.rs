@@ -35,6 +35,8 @@ pub struct Scene {
     pub method: &'static dyn Method,
     /// s.
     pub step: f64,
+    /// Error a step that a method with steps of its own may make, relative to the state.
+    pub tolerance: f64,
     pub record: Record,
     /// The effects that are called for; those switched off are not here.
     pub effects: Vec<(&'static str, Called)>,

@@ -4,12 +4,16 @@ use super::problem::Problems;
 use super::table::{Node, Table, nearest};
 use super::{Record, Scene, StateRate, body, event};
 use crate::effect::{Argument, Called, EFFECTS, EffectKind, Value};
-use crate::integrator::{self, DEFAULT_METHOD, METHODS, Method};
+use crate::integrator::{self, DEFAULT_METHOD, Kind, METHODS, Method};
 use crate::trace::{STREAMS, StreamSet};
 use toml::de::DeTable;
 
 /// Seconds. A thousandth is what game engines and controllers use.
 const DEFAULT_STEP: f64 = 1e-3;
+/// Of methods that choose their own steps: as accurate as there is need for.
+const DEFAULT_TOLERANCE: f64 = 1e-12;
+/// Half an ulp is 1.1e-16.
+const TIGHTEST_TOLERANCE: f64 = 1e-16;
 /// Samples a second of the derived streams: what a screen shows.
 const DEFAULT_RATE: f64 = 60.0;
 /// Times are recorded as whole nanoseconds in 63 bits, which is 292 years.
@@ -49,7 +53,7 @@ fn read(top: &Table<'_>, name: &str, source: &str, problems: &mut Problems) -> O
         .and_then(|node| node.str(problems))
         .unwrap_or(name);
     let duration = duration(top, problems);
-    let (method, step) = stepping(top, duration, problems);
+    let (method, step, tolerance) = stepping(top, duration, problems);
     let (record, rate_chosen) = record(top, problems);
     let effects = effects(top, step.unwrap_or(DEFAULT_STEP), problems);
     let gyroscopic = effects.iter().any(|(name, _)| *name == "gyroscopic");
@@ -78,6 +82,7 @@ fn read(top: &Table<'_>, name: &str, source: &str, problems: &mut Problems) -> O
         duration: duration?,
         method: method?,
         step: step?,
+        tolerance: tolerance?,
         record: record?,
         effects,
         bodies: bodies.into_valid()?,
@@ -113,11 +118,11 @@ fn stepping(
     top: &Table<'_>,
     duration: Option<f64>,
     problems: &mut Problems,
-) -> (Option<&'static dyn Method>, Option<f64>) {
+) -> (Option<&'static dyn Method>, Option<f64>, Option<f64>) {
     let default = integrator::find(DEFAULT_METHOD);
     let default_step = DEFAULT_STEP.min(duration.unwrap_or(DEFAULT_STEP));
     let Some(table) = top.table("stepping", problems) else {
-        return (default, Some(default_step));
+        return (default, Some(default_step), Some(DEFAULT_TOLERANCE));
     };
     let method = match table.get("method") {
         None => default,
@@ -148,8 +153,40 @@ fn stepping(
             false
         }),
     };
+    let tolerance = match table.get("tolerance") {
+        None => Some(DEFAULT_TOLERANCE),
+        Some(node) => tolerance(&node, method, problems),
+    };
     table.check_keys(problems);
-    (method, step)
+    (method, step, tolerance)
+}
+
+fn tolerance(
+    node: &Node<'_>,
+    method: Option<&'static dyn Method>,
+    problems: &mut Problems,
+) -> Option<f64> {
+    let tolerance = node.positive("relative error a step", problems)?;
+    if let Some(info) = method.map(|method| method.info())
+        && info.kind != Kind::Adaptive
+    {
+        let message = format!(
+            "means nothing to {}, which takes the steps it is given; set `step`, or choose a method that steps by tolerance",
+            info.name
+        );
+        node.problem(message, problems);
+        return None;
+    }
+    if !(TIGHTEST_TOLERANCE..=1e-2).contains(&tolerance) {
+        node.problem(
+            format!(
+                "is not between {TIGHTEST_TOLERANCE:e}, which 64-bit numbers can resolve, and 1e-2"
+            ),
+            problems,
+        );
+        return None;
+    }
+    Some(tolerance)
 }
 
 /// What to record, and whether the file says how often the state is.

@@ -1,10 +1,9 @@
 //! Up to eight bodies stepped together, and their translation to and from body axes.
 
 use super::Jump;
-use super::schedule::Step;
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
 use crate::effect::{Called, Couple, Effect, Frame, Load, Push, WrenchBlock};
-use crate::integrator::Method;
+use crate::integrator::{Interval, Method, Step, Stepper, Work};
 use crate::mass::tensor;
 use crate::scene::{Action, Body, Event, Framed, Scene};
 use crate::trace::{Motion, PointForce, Sample, Subject};
@@ -23,9 +22,13 @@ pub struct Group {
     pushes: Vec<Push>,
     /// Body axes → principal axes of each lane.
     q_pb: [UnitQuaternion<f64>; LANES],
-    /// The state before the stretch that is being taken, and after each of its steps.
-    before: StateBlock,
-    after: Vec<StateBlock>,
+    /// The method on its way from the last event on.
+    stepper: Option<Box<dyn Stepper>>,
+    /// The stepper before the stretch that is being taken, and the states kept of it.
+    before: Option<Box<dyn Stepper>>,
+    kept: Vec<StateBlock>,
+    /// What the steppers before this one did.
+    done: Work,
 }
 
 /// What about a body does not change, for the trace.
@@ -80,9 +83,11 @@ impl Group {
             state: StateBlock::default(),
             load: Load::default(),
             pushes: Vec::new(),
-            before: StateBlock::default(),
-            after: Vec::new(),
             q_pb: [UnitQuaternion::identity(); LANES],
+            stepper: None,
+            before: None,
+            kept: Vec::new(),
+            done: Work::default(),
         };
         for (lane, body) in bodies.iter().enumerate() {
             let (inertial, q_bp) = Inertial::new(&body.properties, body.pivot_b);
@@ -93,34 +98,63 @@ impl Group {
         group
     }
 
+    /// Sets out from here, at time `t`, with a method that may look ahead to `until`.
+    pub fn set_out(&mut self, method: &dyn Method, tolerance: f64, t: f64, until: f64) {
+        let interval = Interval {
+            load: self.load.clone(),
+            inertial: self.inertial,
+            bodies: self.members.len(),
+            until,
+            tolerance,
+        };
+        self.done = self.work();
+        self.stepper = Some(method.start(interval, t, &self.state));
+    }
+
     /// Takes a stretch of steps. Where a body's state is lost it stops after that step: how many
     /// steps it took, and the body.
-    pub fn advance(&mut self, method: &dyn Method, steps: &[Step]) -> Option<(usize, usize)> {
-        self.before = self.state;
-        self.after.clear();
-        for step in steps {
-            method.step(
-                step.from,
-                step.h,
-                &self.load,
-                &self.inertial,
-                &mut self.state,
-            );
-            self.after.push(self.state);
+    pub fn advance(&mut self, steps: &[Step]) -> Option<(usize, usize)> {
+        self.before.clone_from(&self.stepper);
+        self.take(steps);
+        self.first_not_finite()?;
+        // Once lost, a state stays lost: find the step by taking them singly.
+        self.rewind();
+        let mut singly = steps.to_vec();
+        for (k, step) in singly.iter_mut().enumerate() {
+            step.keep = true;
+            self.take(std::slice::from_ref(step));
             if let Some(body) = self.first_not_finite() {
-                return Some((self.after.len(), body));
+                return Some((k + 1, body));
             }
         }
         None
     }
 
+    fn take(&mut self, steps: &[Step]) {
+        let Some(stepper) = &mut self.stepper else {
+            return;
+        };
+        self.kept.clear();
+        stepper.advance(steps, &mut self.kept);
+        self.state = stepper.state();
+    }
+
+    /// Takes the last stretch again, as far as these steps go and whatever comes of it.
+    pub fn retake(&mut self, steps: &[Step]) {
+        self.rewind();
+        self.take(steps);
+    }
+
     /// Back to before the last stretch.
-    pub fn rewind(&mut self) {
-        self.state = self.before;
+    fn rewind(&mut self) {
+        self.stepper.clone_from(&self.before);
+        if let Some(stepper) = &self.stepper {
+            self.state = stepper.state();
+        }
     }
 
     /// The first body whose state is not finite.
-    pub fn first_not_finite(&self) -> Option<usize> {
+    fn first_not_finite(&self) -> Option<usize> {
         let lost = |lane: &usize| !self.state.get(*lane).is_finite();
         let lane = (0..self.members.len()).find(lost)?;
         Some(self.members.start + lane)
@@ -136,15 +170,21 @@ impl Group {
         let lane = body - self.members.start;
         let turn = |block: &StateBlock| block.get(lane).omega_w.norm() * h;
         let sane = self
-            .after
+            .kept
             .iter()
             .map(turn)
             .rfind(|&x| x < std::f64::consts::TAU);
-        sane.unwrap_or_else(|| turn(&self.before))
+        let before = self.before.as_ref().map(|stepper| turn(&stepper.state()));
+        sane.or(before).unwrap_or(f64::NAN)
     }
 
-    pub fn has_inertial_effect(&self) -> bool {
-        self.load.has_inertial()
+    pub fn is_gyroscopic(&self) -> bool {
+        self.load.gyroscopic()
+    }
+
+    pub fn work(&self) -> Work {
+        let now = self.stepper.as_ref().map(|stepper| stepper.work());
+        self.done + now.unwrap_or_default()
     }
 
     /// The effects of the scene and the active events that concern this group.
@@ -155,6 +195,7 @@ impl Group {
             match effect {
                 Called::Load(effect) => self.load.push(Arc::clone(effect)),
                 Called::Decay(decay) => self.load.set_decay(*decay),
+                Called::Gyroscopic => self.load.set_gyroscopic(),
                 Called::Off => {}
             }
         }
@@ -229,9 +270,9 @@ impl Group {
         self.poses(&self.state)
     }
 
-    /// The same after step `k` of the last stretch.
-    pub fn motions_after(&self, k: usize) -> impl Iterator<Item = Motion> + '_ {
-        self.poses(&self.after[k])
+    /// The same of the `k`-th state kept of the last stretch.
+    pub fn motions_kept(&self, k: usize) -> impl Iterator<Item = Motion> + '_ {
+        self.poses(&self.kept[k])
     }
 
     fn poses<'a>(&'a self, block: &'a StateBlock) -> impl Iterator<Item = Motion> + 'a {
@@ -240,27 +281,40 @@ impl Group {
 
     /// The states and what the model says follows, at time `t`.
     pub fn samples(&self, t: f64) -> Vec<Sample> {
-        let (total, applied) = self.wrenches(t);
+        self.samples_of(t, &self.state)
+    }
+
+    /// The same of the `k`-th state kept of the last stretch, which was at time `t`.
+    pub fn samples_kept(&self, k: usize, t: f64) -> Vec<Sample> {
+        self.samples_of(t, &self.kept[k])
+    }
+
+    fn samples_of(&self, t: f64, block: &StateBlock) -> Vec<Sample> {
+        let wrench = self.wrench(t, block);
         (0..self.members.len())
-            .map(|lane| self.sample_of(lane, &total, &applied))
+            .map(|lane| self.sample_of(lane, block.get(lane), &wrench))
             .collect()
     }
 
     /// The same of one body.
     pub fn sample(&self, body: usize, t: f64) -> Sample {
-        let (total, applied) = self.wrenches(t);
-        self.sample_of(body - self.members.start, &total, &applied)
+        let wrench = self.wrench(t, &self.state);
+        let lane = body - self.members.start;
+        self.sample_of(lane, self.state.get(lane), &wrench)
     }
 
-    fn wrenches(&self, t: f64) -> (WrenchBlock, WrenchBlock) {
-        let total = self.load.wrench(t, &self.inertial, &self.state);
-        (total, self.load.applied(t, &self.inertial, &self.state))
+    fn wrench(&self, t: f64, block: &StateBlock) -> WrenchBlock {
+        let wrench = self.load.wrench(t, &self.inertial, block);
+        wrench.unwrap_or_default()
     }
 
-    fn sample_of(&self, lane: usize, total: &WrenchBlock, applied: &WrenchBlock) -> Sample {
-        let (state, inertial) = (self.state.get(lane), self.inertial.get(lane));
-        let mut tau_w = applied.get(lane).tau_w;
-        let mut alpha_w = inertial.angular_response(&state, total.get(lane).tau_w);
+    fn sample_of(&self, lane: usize, state: State, wrench: &WrenchBlock) -> Sample {
+        let inertial = self.inertial.get(lane);
+        let mut tau_w = wrench.get(lane).tau_w;
+        let mut alpha_w = match self.load.gyroscopic() {
+            true => inertial.gyroscopic_response(&state, tau_w),
+            false => inertial.angular_response(&state, tau_w),
+        };
         if let Some(decay) = self.load.decay() {
             tau_w -= inertial.momentum_w(&state) * decay.angular_rate();
             alpha_w -= state.omega_w * decay.angular_rate();

@@ -8,13 +8,14 @@ mod sizes;
 pub use sizes::Sizes;
 
 use crate::body::LANES;
+use crate::integrator::{Step, Work};
 use crate::scene::{Action, Scene};
 use crate::trace::{
     Instant, Motion, Note, NoteKind, PointForce, Sample, Sink, SinkError, Subject, Track, short,
 };
 use group::Group;
 use nalgebra::Vector3;
-use schedule::{Mark, Schedule, Step};
+use schedule::{Schedule, Stretch};
 use script::Happening;
 
 /// A scene being stepped.
@@ -24,7 +25,11 @@ pub struct Simulation<'s> {
     groups: Vec<Group>,
     /// Indices of the events that act now.
     active: Vec<usize>,
+    threads: usize,
 }
+
+/// Steps of a block from which on a thread is worth its start (some 40 µs): about ten times that.
+const WORTH_A_THREAD: usize = 8192;
 
 /// What a run leaves besides its trace.
 #[derive(Clone, Debug, Default)]
@@ -32,6 +37,8 @@ pub struct Outcome {
     pub steps: u64,
     /// Every event as it struck.
     pub blows: Vec<Blow>,
+    /// What the method did, over all blocks of eight bodies.
+    pub work: Work,
     /// All bodies at the end, or where the run stopped.
     pub end: Vec<Sample>,
 }
@@ -85,11 +92,20 @@ impl<'s> Simulation<'s> {
             subjects: scene.bodies.iter().map(group::subject).collect(),
             groups: group::groups(&scene.bodies),
             active: Vec::new(),
+            threads: std::thread::available_parallelism().map_or(1, usize::from),
         };
         for group in &mut simulation.groups {
             group.load(scene, &[]);
         }
         simulation
+    }
+
+    /// Steps on at most so many threads; as many as the machine has where nothing is said. The
+    /// motion is the same, to the last bit, on any number.
+    #[must_use]
+    pub fn on_threads(mut self, threads: usize) -> Self {
+        self.threads = threads.max(1);
+        self
     }
 
     /// The bodies, as the trace names them.
@@ -127,6 +143,8 @@ impl<'s> Simulation<'s> {
         let done = self.play(&mut schedule, &mut outcome, sink);
         let now = schedule.now();
         outcome.steps = now.step;
+        let works = self.groups.iter().map(Group::work);
+        outcome.work = works.fold(Work::default(), |a, b| a + b);
         outcome.end = self.samples(now.time);
         (outcome, done)
     }
@@ -143,81 +161,116 @@ impl<'s> Simulation<'s> {
         sink.samples(start, 0..self.subjects.len(), &self.samples(start.time))?;
         let all: Vec<usize> = (0..self.subjects.len()).collect();
         self.must_be_finite(start, &all, sink)?;
-        while let Some((steps, mark)) = schedule.next_stretch() {
-            if let Some((taken, body)) = self.stretch(&steps, sink)? {
-                schedule.stop_after(&steps[taken - 1]);
-                let at = steps[taken - 1].after;
+        self.set_out(&all, schedule);
+        loop {
+            let first = schedule.now();
+            let Some(stretch) = schedule.next_stretch() else {
+                return Ok(());
+            };
+            if let Some((at, body)) = self.stretch(&stretch, first, sink)? {
+                schedule.stop_at(at);
                 return Err(self.not_finite(at, body, sink));
             }
-            let now = schedule.now();
-            match mark {
-                Mark::None => {}
-                Mark::Display => {
-                    sink.samples(now, 0..self.subjects.len(), &self.samples(now.time))?;
-                }
-                Mark::Events {
-                    happenings,
-                    display,
-                } => {
-                    let touched = self.touched(&happenings);
-                    if display {
-                        sink.samples(now, 0..self.subjects.len(), &self.samples(now.time))?;
-                    } else {
-                        self.deliver_bodies(now, &touched, sink)?;
-                    }
-                    let jumped = self.happen(now, &happenings, outcome, sink)?;
-                    if jumped {
-                        self.deliver_motions(now, sink)?;
-                    }
-                    self.deliver_bodies(now, &touched, sink)?;
-                    self.must_be_finite(now, &touched, sink)?;
-                }
+            if stretch.happenings.is_empty() {
+                continue;
             }
+            let now = schedule.now();
+            let touched = self.touched(&stretch.happenings);
+            if !stretch.kept.last().is_some_and(|last| last.display) {
+                self.deliver_bodies(now, &touched, sink)?;
+            }
+            let jumped = self.happen(now, &stretch.happenings, outcome, sink)?;
+            if jumped {
+                self.deliver_motions(now, sink)?;
+            }
+            self.deliver_bodies(now, &touched, sink)?;
+            self.must_be_finite(now, &touched, sink)?;
+            self.set_out(&touched, schedule);
         }
-        Ok(())
+    }
+
+    /// Starts the method of the groups of these bodies: from now until an event touches them.
+    fn set_out(&mut self, bodies: &[usize], schedule: &Schedule<'_>) {
+        let mut groups: Vec<usize> = bodies.iter().map(|body| body / LANES).collect();
+        groups.dedup();
+        let now = schedule.now().time;
+        for group in groups {
+            let members = self.groups[group].members.clone();
+            let touches =
+                |happening: Happening| members.contains(&self.scene.events[happening.event()].body);
+            let until = schedule.until(touches);
+            self.groups[group].set_out(self.scene.method, self.scene.tolerance, now, until);
+        }
     }
 
     /// Takes every group through a stretch without events, one group after another. Where a state
-    /// is lost: the steps taken until then, by all groups alike, and the body.
+    /// is lost, all are taken to that step alike: when that is, and the body.
     fn stretch(
         &mut self,
-        steps: &[Step],
+        stretch: &Stretch,
+        first: Instant,
         sink: &mut dyn Sink,
-    ) -> Result<Option<(usize, usize)>, SimError> {
-        let method = self.scene.method;
-        let mut lost: Option<(usize, usize)> = None;
-        for group in &mut self.groups {
-            let found = group.advance(method, steps);
-            lost = match (lost, found) {
-                (Some(a), Some(b)) => Some(if b.0 < a.0 { b } else { a }),
-                (a, b) => a.or(b),
-            };
-        }
-        let taken = lost.map_or(steps.len(), |(taken, _)| taken);
-        if lost.is_some() {
-            for group in &mut self.groups {
-                group.rewind();
-                group.advance(method, &steps[..taken]);
-            }
-        }
-        let kept = |(k, step): (usize, &Step)| {
-            (step.keep || (lost.is_some() && k + 1 == taken)).then_some((k, step.after))
+    ) -> Result<Option<(Instant, usize)>, SimError> {
+        let lost = self.advance(&stretch.steps);
+        let Some((taken, body)) = lost else {
+            self.deliver_stretch(stretch, sink)?;
+            return Ok(None);
         };
-        let kept: Vec<(usize, Instant)> =
-            steps[..taken].iter().enumerate().filter_map(kept).collect();
-        let instants: Vec<Instant> = kept.iter().map(|&(_, at)| at).collect();
+        let cut = stretch.cut(taken, first);
+        for group in &mut self.groups {
+            group.retake(&cut.steps);
+        }
+        self.deliver_stretch(&cut, sink)?;
+        Ok(Some((cut.after(taken - 1, first), body)))
+    }
+
+    /// Steps all groups, each through all the steps, on as many threads as are allowed. Bodies do
+    /// not act on each other, so it is all one in which order. The first loss of a state there is:
+    /// the steps taken until then, and the body.
+    fn advance(&mut self, steps: &[Step]) -> Option<(usize, usize)> {
+        let enough = self.groups.len() * steps.len() >= WORTH_A_THREAD;
+        let threads = if enough { self.threads } else { 1 };
+        let share = self.groups.len().div_ceil(threads).max(1);
+        let advance = |groups: &mut [Group]| {
+            let losses = groups.iter_mut().filter_map(|group| group.advance(steps));
+            losses.min()
+        };
+        if threads == 1 {
+            return advance(&mut self.groups);
+        }
+        std::thread::scope(|scope| {
+            let shares = self.groups.chunks_mut(share);
+            let running: Vec<_> = shares.map(|share| scope.spawn(|| advance(share))).collect();
+            let losses = running.into_iter().filter_map(|thread| thread.join().ok()?);
+            losses.min()
+        })
+    }
+
+    /// Delivers what was kept of a stretch: the states group by group, then the derived streams.
+    fn deliver_stretch(&self, stretch: &Stretch, sink: &mut dyn Sink) -> Result<(), SinkError> {
+        let states = || {
+            let kept = stretch.kept.iter().enumerate();
+            kept.filter(|(_, kept)| kept.state)
+        };
+        let instants: Vec<Instant> = states().map(|(_, kept)| kept.at).collect();
         for group in &self.groups {
-            let motions: Vec<Motion> = kept
-                .iter()
-                .flat_map(|&(k, _)| group.motions_after(k))
-                .collect();
+            let motions: Vec<Motion> = states().flat_map(|(k, _)| group.motions_kept(k)).collect();
             sink.motions(&Track {
                 bodies: group.members.clone(),
                 instants: &instants,
                 motions: &motions,
             })?;
         }
-        Ok(lost)
+        for (k, kept) in stretch.kept.iter().enumerate() {
+            if kept.display {
+                let groups = self.groups.iter();
+                let samples: Vec<Sample> = groups
+                    .flat_map(|group| group.samples_kept(k, kept.at.time))
+                    .collect();
+                sink.samples(kept.at, 0..self.subjects.len(), &samples)?;
+            }
+        }
+        Ok(())
     }
 
     /// Whether these bodies' states and accelerations can be computed with.
@@ -268,7 +321,7 @@ impl<'s> Simulation<'s> {
         const FAR: f64 = 0.1;
         let group = self.group_of(body);
         let turned = group.turn_in_a_step(body, self.scene.step);
-        if group.has_inertial_effect() && turned > FAR {
+        if group.is_gyroscopic() && turned > FAR {
             let turned = short(turned);
             return format!(
                 "it turned {turned} rad a step, too far for the gyroscopic term; take a smaller step or another method"

@@ -4,6 +4,7 @@
 //! `t = k h + r`. A step that an event divides is taken in two pieces.
 
 use super::script::Happening;
+use crate::integrator::Step;
 use crate::scene::{Scene, StateRate};
 use crate::trace::Instant;
 
@@ -18,34 +19,66 @@ struct Node {
     time: f64,
 }
 
-/// One step of a method.
+/// Steps without an event inside, and what is wanted on the way.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stretch {
+    pub steps: Vec<Step>,
+    /// The steps whose states are kept, in order.
+    pub kept: Vec<Kept>,
+    /// What happens at its end.
+    pub happenings: Vec<Happening>,
+}
+
+/// A state on the way that somebody asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
-    /// s.
-    pub from: f64,
-    /// s.
-    pub h: f64,
-    pub after: Instant,
-    /// Whether the state after it is recorded.
-    pub keep: bool,
+pub struct Kept {
+    /// Index of the step that it ends.
+    pub step: usize,
+    pub at: Instant,
+    /// Whether it is recorded as part of the state.
+    pub state: bool,
+    /// Whether the derived streams are due.
+    pub display: bool,
 }
 
-/// Why a stretch of steps ends where it does.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Mark {
-    /// Only so that a stretch does not become too long.
-    None,
-    /// The derived streams are due.
-    Display,
-    Events {
-        happenings: Vec<Happening>,
-        /// Whether the derived streams are due as well.
-        display: bool,
-    },
+impl Stretch {
+    /// The instant after step `k`.
+    pub fn after(&self, k: usize, first: Instant) -> Instant {
+        Instant {
+            time: self.steps[k].to,
+            step: first.step + k as u64 + 1,
+        }
+    }
+
+    /// Only the first `taken` steps, the last of them recorded as a state.
+    pub fn cut(&self, taken: usize, first: Instant) -> Self {
+        let mut kept: Vec<Kept> = self.kept.clone();
+        kept.retain(|kept| kept.step + 1 < taken);
+        let mut steps = self.steps[..taken].to_vec();
+        if let Some(last) = steps.last_mut() {
+            last.keep = true;
+            kept.push(Kept {
+                step: taken - 1,
+                at: self.after(taken - 1, first),
+                state: true,
+                display: false,
+            });
+        }
+        Self {
+            steps,
+            kept,
+            happenings: Vec::new(),
+        }
+    }
 }
 
-/// Steps in a stretch at most: what is buffered between two deliveries.
+/// Steps in a stretch at most, and states of bodies in one: what is buffered between two
+/// deliveries, some 20 MB.
 const LONGEST_STRETCH: u64 = 1024;
+const MOST_STATES: u64 = 200_000;
+/// Steps in a stretch at least: threads are started once a stretch, which costs as much as some
+/// thousand body-steps.
+const SHORTEST_STRETCH: u64 = 64;
 
 pub struct Schedule<'s> {
     scene: &'s Scene,
@@ -54,7 +87,9 @@ pub struct Schedule<'s> {
     /// Sampling instants of the derived streams that have been delivered.
     shown: f64,
     /// Begins and ends after the start, in order of time.
-    happenings: std::iter::Peekable<std::vec::IntoIter<(Node, Vec<Happening>)>>,
+    happenings: Vec<(Node, Vec<Happening>)>,
+    /// How many of them are past.
+    past: usize,
     end: Node,
 }
 
@@ -82,7 +117,8 @@ impl<'s> Schedule<'s> {
             },
             steps: 0,
             shown: 0.0,
-            happenings: nodes.into_iter().peekable(),
+            happenings: nodes,
+            past: 0,
             end,
         }
     }
@@ -94,30 +130,62 @@ impl<'s> Schedule<'s> {
         }
     }
 
-    /// The steps up to the next mark, and the mark; `None` at the end of the scene.
-    pub fn next_stretch(&mut self) -> Option<(Vec<Step>, Mark)> {
+    /// The steps up to the next event, or as many as are taken at once; `None` at the end of the
+    /// scene.
+    pub fn next_stretch(&mut self) -> Option<Stretch> {
         if !before(self.now, self.end) {
             return None;
         }
         let target = self.target();
-        let mut steps = Vec::new();
+        let mut stretch = Stretch::default();
         while before(self.now, target) {
-            steps.push(self.step_towards(target));
+            let index = stretch.steps.len();
+            let (mut step, state) = self.step_towards(target);
+            let display = self.display_is_due();
+            step.keep = state || display;
+            stretch.steps.push(step);
+            if step.keep {
+                stretch.kept.push(Kept {
+                    step: index,
+                    at: self.now(),
+                    state,
+                    display,
+                });
+            }
         }
-        Some((steps, self.mark()))
+        let here = self.now;
+        if let Some((at, happenings)) = self.happenings.get(self.past)
+            && same(*at, here)
+        {
+            stretch.happenings.clone_from(happenings);
+            self.past += 1;
+        }
+        Some(stretch)
     }
 
-    /// The earliest of: the next event, the next display sample, the end, the longest stretch.
-    fn target(&mut self) -> Node {
-        let h = self.scene.step;
-        let due = self.next_tick();
-        let on_grid = due.min(self.now.grid + LONGEST_STRETCH);
+    /// When the next event that satisfies `touches` happens after now, or else the end, s.
+    pub fn until(&self, touches: impl Fn(Happening) -> bool) -> f64 {
+        let mut coming = self.happenings[self.past..].iter();
+        coming
+            .find(|(_, group)| group.iter().any(|&happening| touches(happening)))
+            .map_or(self.end.time, |(at, _)| at.time)
+    }
+
+    fn coming(&self) -> Option<Node> {
+        self.happenings.get(self.past).map(|(at, _)| *at)
+    }
+
+    /// The earliest of: the next event, the end, the longest stretch.
+    fn target(&self) -> Node {
+        let bodies = self.scene.bodies.len().max(1) as u64;
+        let longest = (MOST_STATES / bodies).clamp(SHORTEST_STRETCH, LONGEST_STRETCH);
+        let on_grid = self.now.grid + longest;
         let mut target = Node {
             grid: on_grid,
             rest: 0.0,
-            time: on_grid as f64 * h,
+            time: on_grid as f64 * self.scene.step,
         };
-        for candidate in [Some(self.end), self.happenings.peek().map(|(at, _)| *at)] {
+        for candidate in [Some(self.end), self.coming()] {
             if let Some(at) = candidate
                 && !before(target, at)
             {
@@ -127,27 +195,8 @@ impl<'s> Schedule<'s> {
         target
     }
 
-    /// The grid node at which the derived streams are due next. [`ticks`] alone says which nodes
-    /// count a new instant; the division only finds the neighbourhood.
-    fn next_tick(&self) -> u64 {
-        let (h, rate) = (self.scene.step, self.scene.record.rate);
-        let counts = |grid: u64| ticks(grid, h, rate) > self.shown;
-        let first = self.now.grid + 1;
-        let mut due = grid_of_tick(self.shown + 1.0, h, rate).max(first);
-        while due > first && counts(due - 1) {
-            due -= 1;
-        }
-        // Within a node or two, by rounding; a rate beyond all counting has no next instant.
-        for _ in 0..4 {
-            if counts(due) {
-                break;
-            }
-            due = due.saturating_add(1);
-        }
-        due
-    }
-
-    fn step_towards(&mut self, target: Node) -> Step {
+    /// A step, and whether the state after it is recorded.
+    fn step_towards(&mut self, target: Node) -> (Step, bool) {
         let h = self.scene.step;
         let (from, old) = (self.now, self.now.grid);
         let next = Node {
@@ -163,30 +212,26 @@ impl<'s> Schedule<'s> {
         };
         self.now = to;
         self.steps += 1;
-        let at_event = self.happenings.peek().is_some_and(|(at, _)| same(*at, to));
-        Step {
+        let at_event = self.coming().is_some_and(|at| same(at, to));
+        let step = Step {
             from: from.time,
             h: length,
-            after: self.now(),
-            keep: at_event || !before(to, self.end) || self.state_is_due(from, to),
-        }
+            to: to.time,
+            keep: false,
+        };
+        let state = at_event || !before(to, self.end) || self.state_is_due(from, to);
+        (step, state)
     }
 
-    fn mark(&mut self) -> Mark {
+    /// Whether the derived streams are due here; counts the instant as shown.
+    fn display_is_due(&mut self) -> bool {
         let here = self.now;
         let ticks = ticks(here.grid, self.scene.step, self.scene.record.rate);
         let due = here.rest == 0.0 && ticks > self.shown;
         if due {
             self.shown = ticks;
         }
-        let display = due || !before(here, self.end);
-        if let Some((_, happenings)) = self.happenings.next_if(|(at, _)| same(*at, here)) {
-            return Mark::Events {
-                happenings,
-                display,
-            };
-        }
-        if display { Mark::Display } else { Mark::None }
+        due || !before(here, self.end)
     }
 
     /// Whether a sampling instant of the state lies in a step.
@@ -199,9 +244,9 @@ impl<'s> Schedule<'s> {
     }
 
     /// Sets the clock back to where a stretch was broken off.
-    pub fn stop_after(&mut self, step: &Step) {
-        self.steps = step.after.step;
-        self.now.time = step.after.time;
+    pub fn stop_at(&mut self, at: Instant) {
+        self.steps = at.step;
+        self.now.time = at.time;
     }
 }
 
@@ -247,10 +292,4 @@ fn same(a: Node, b: Node) -> bool {
 pub fn ticks(grid: u64, h: f64, rate: f64) -> f64 {
     let ticks = grid as f64 * h * rate;
     (ticks + rounding(ticks)).floor()
-}
-
-/// The first grid node at or after a sampling instant.
-fn grid_of_tick(tick: f64, h: f64, rate: f64) -> u64 {
-    let steps = tick / (rate * h);
-    (steps - rounding(steps)).ceil() as u64
 }

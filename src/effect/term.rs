@@ -1,0 +1,102 @@
+//! What effects are made of, for methods that must know more of a torque than its value.
+
+use super::Frame;
+
+/// A constant force at a point, or a constant torque, on one lane of a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Term {
+    /// `F` at `point`; the torque is `(p - x) × F`.
+    Force {
+        lane: usize,
+        /// N.
+        force: Frame,
+        /// m.
+        point: Frame,
+    },
+    Torque {
+        lane: usize,
+        /// N·m.
+        torque: Frame,
+    },
+}
+
+impl Term {
+    pub fn lane(&self) -> usize {
+        match *self {
+            Self::Force { lane, .. } | Self::Torque { lane, .. } => lane,
+        }
+    }
+
+    /// A force fixed in the world at the reference point is constant and turns nothing; a torque
+    /// fixed in the world is constant; all else changes as the body moves or turns.
+    pub fn depends(&self) -> Depends {
+        match self {
+            Self::Force {
+                force: Frame::World(_),
+                point: Frame::Principal(p),
+                ..
+            } if p.norm_squared() == 0.0 => Depends::NOTHING,
+            Self::Force { .. }
+            | Self::Torque {
+                torque: Frame::Principal(_),
+                ..
+            } => Depends {
+                torque: true,
+                place: true,
+                ..Depends::NOTHING
+            },
+            Self::Torque {
+                torque: Frame::World(_),
+                ..
+            } => Depends {
+                torque: true,
+                ..Depends::NOTHING
+            },
+        }
+    }
+}
+
+/// What forces and torques depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Depends {
+    /// There is a torque.
+    pub torque: bool,
+    /// A force or torque changes with time.
+    pub time: bool,
+    /// With place or attitude.
+    pub place: bool,
+    /// With velocity or angular velocity.
+    pub velocity: bool,
+}
+
+impl Depends {
+    /// No torque, and forces that are constant.
+    pub const NOTHING: Self = Self {
+        torque: false,
+        time: false,
+        place: false,
+        velocity: false,
+    };
+    pub const EVERYTHING: Self = Self {
+        torque: true,
+        time: true,
+        place: true,
+        velocity: true,
+    };
+
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            torque: self.torque || other.torque,
+            time: self.time || other.time,
+            place: self.place || other.place,
+            velocity: self.velocity || other.velocity,
+        }
+    }
+}
+
+impl FromIterator<Self> for Depends {
+    fn from_iter<T: IntoIterator<Item = Self>>(all: T) -> Self {
+        all.into_iter().fold(Self::NOTHING, Self::or)
+    }
+}

@@ -1,0 +1,124 @@
+//! What a method promises, what it takes and where it comes from.
+
+use super::Interval;
+use crate::effect::Depends;
+
+#[derive(Clone, Copy, Debug)]
+pub struct MethodInfo {
+    /// As scenes and the command line name it.
+    pub name: &'static str,
+    /// Engines whose scheme this is; scenes can call it by them.
+    pub engines: &'static [&'static str],
+    pub kind: Kind,
+    /// Global order of accuracy in attitude, for smooth forces that it accepts. For methods that
+    /// choose their own steps, of the formula they use.
+    pub order: u32,
+    pub accepts: Accepts,
+    pub damping: Damping,
+    /// A step back undoes a step forth, to rounding.
+    pub reversible: bool,
+    /// Of a free body |L|, in the world its direction too, is kept to rounding.
+    pub keeps_momentum: bool,
+    /// What it keeps, for readers.
+    pub preserves: &'static str,
+    pub cost: Cost,
+    pub citation: &'static str,
+}
+
+/// How a method gets through time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// By the steps it is given.
+    Fixed,
+    /// By steps of its own, as long as its tolerance allows.
+    Adaptive,
+    /// At once, to any time.
+    Closed,
+}
+
+/// Which torques a method takes without losing its order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Accepts {
+    /// Any.
+    Any,
+    /// Any that do not depend on velocities.
+    Place,
+    /// Constant forces at points and constant torques, in either frame.
+    Terms,
+    /// No torque, and forces that are constant.
+    Free,
+}
+
+/// How damping enters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Damping {
+    /// Velocities by themselves decay exactly as `e^{-ct}`; this is how.
+    Exact(&'static str),
+    /// As the engine does it.
+    Engine(&'static str),
+    /// Not at all: such loads are refused.
+    Refused,
+}
+
+/// What it costs, for plans that must not depend on a clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Evaluations of the equations of motion a step; 0 where it varies.
+    pub evaluations: u32,
+    /// Time of a step of one free body alone, in units of a step of rk4, as the benchmark
+    /// measured it; of an evaluation at one instant for a closed form.
+    pub weight: f64,
+}
+
+/// Why a method does not take a load.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Refusal(pub String);
+
+impl Accepts {
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Any => "any",
+            Self::Place => "any of time, place and attitude, not of velocities",
+            Self::Terms => "constant forces at points and constant torques, world or body",
+            Self::Free => "none, and forces that are constant",
+        }
+    }
+}
+
+impl Damping {
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Exact(how) | Self::Engine(how) => how,
+            Self::Refused => "refused",
+        }
+    }
+}
+
+impl MethodInfo {
+    /// Why this load would cost the method its order, if it would.
+    pub fn refuses(&self, interval: &Interval) -> Option<Refusal> {
+        let (load, inertial) = (&interval.load, &interval.inertial);
+        let refusal = |why: &str| Some(Refusal(format!("{} {why}", self.name)));
+        if self.damping == Damping::Refused && load.decay().is_some() {
+            return refusal("takes no damping");
+        }
+        let depends: Depends = load.depends(inertial);
+        match self.accepts {
+            Accepts::Any => None,
+            Accepts::Place if depends.velocity => refusal(
+                "kicks by torques that depend on place and time alone: one that depends on velocity would cost it its order",
+            ),
+            Accepts::Terms if load.terms(inertial).is_none() => refusal(
+                "knows the recurrences of constant forces at points and constant torques alone, and something else acts here",
+            ),
+            Accepts::Free if depends.torque => {
+                refusal("is the motion of a body that no torque turns, and a torque acts here")
+            }
+            Accepts::Free if depends != Depends::NOTHING => {
+                refusal("takes forces that are constant, and one here is not")
+            }
+            _ => None,
+        }
+    }
+}
