@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// The rooms, lowest first; rooms of one level may see each other.
-const LEVELS: [&[&str]; 8] = [
+const LEVELS: [&[&str]; 9] = [
     &["math"],
     &["mass"],
     &["body"],
@@ -11,6 +11,7 @@ const LEVELS: [&[&str]; 8] = [
     &["integrator"],
     &["scene", "trace"],
     &["sim"],
+    &["cost"],
     &["record", "live"],
 ];
 

@@ -23,7 +23,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 scene.bodies.len(),
                 scene.events.len(),
                 scene.duration,
-                scene.method.info().name,
+                scene.stepping.name(),
                 scene.step
             ))?,
             Err(error) => wrong.push(error),

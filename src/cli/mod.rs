@@ -4,12 +4,15 @@
 //! 2: the command, the scene or the file it names is wrong, and nothing was recorded.
 
 mod check;
+mod cost;
+mod explain;
 mod lists;
 mod print;
 mod run;
 mod scenes;
 mod view;
 
+use crate::cost::PlanError;
 use crate::live::page::PageError;
 use crate::record::RecordError;
 use crate::scene::SceneError;
@@ -34,6 +37,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Verb {
     Run(run::Arguments),
+    Cost(cost::Arguments),
     View(view::Arguments),
     Check(check::Arguments),
     Scenes(scenes::Arguments),
@@ -52,6 +56,7 @@ pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let done = match arguments.verb {
         Verb::Run(arguments) => run::run(&arguments),
+        Verb::Cost(arguments) => cost::run(&arguments),
         Verb::View(arguments) => view::run(&arguments),
         Verb::Check(arguments) => check::run(&arguments),
         Verb::Scenes(arguments) => scenes::run(&arguments),
@@ -77,6 +82,9 @@ struct Wrong(String);
 fn code(error: &anyhow::Error) -> u8 {
     let record = error.downcast_ref::<RecordError>();
     let nowhere = record.is_some_and(|error| !matches!(error, RecordError::Write { .. }));
-    let input = error.is::<SceneError>() || error.is::<Wrong>() || error.is::<PageError>();
+    let input = error.is::<SceneError>()
+        || error.is::<PlanError>()
+        || error.is::<Wrong>()
+        || error.is::<PageError>();
     if input || nowhere { 2 } else { 1 }
 }

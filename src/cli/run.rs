@@ -1,8 +1,9 @@
 //! `run SCENE`: simulate, record, say what happened.
 
-use super::{Wrong, print, view};
+use super::{Wrong, explain, print, view};
+use crate::cost::Plan;
 use crate::record::{Heading, Recorder, Summary};
-use crate::scene::{Action, Event, Scene};
+use crate::scene::{Action, Event, Scene, Stepping};
 use crate::sim::{Blow, Outcome, SimError, Simulation};
 use crate::trace::{Sample, Subject, short, short_numbers, short_vector};
 use serde::Serialize;
@@ -22,6 +23,10 @@ pub struct Arguments {
     view: bool,
     #[command(flatten)]
     serve: view::Serving,
+    /// Print how each body gets through each interval between events: what is active, by which
+    /// method and step, the error to be expected and the error there was.
+    #[arg(long)]
+    explain: bool,
     /// Print one JSON object with every digit instead of tables.
     #[arg(long)]
     json: bool,
@@ -36,6 +41,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.rrd", scene.name)),
     };
+    let plan = plan(&scene, arguments.explain)?;
     let page = match arguments.view {
         true => Some(view::bind(&path, &arguments.serve)?),
         false => None,
@@ -44,7 +50,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let subjects = simulation.subjects().to_vec();
     let heading = Heading::of(&scene, &simulation);
     let mut recorder = Recorder::create(&path, &heading, &subjects)?;
-    let (outcome, done) = simulation.run(&mut recorder);
+    let (outcome, done) = match &plan {
+        Some(plan) => simulation.run_by(&mut plan.chooser(), &mut recorder),
+        None => simulation.run(&mut recorder),
+    };
     if let Err(SimError::Sink(error)) = done {
         // The file itself failed: nothing more can be written to it.
         return Err(error.into());
@@ -52,10 +61,15 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     // Whatever the run came to, the file is closed whole and what there is of it is told.
     let summary = recorder.finish()?;
     if arguments.json {
-        let report = Report::new(&scene, &subjects, &outcome, &summary, done.as_ref().err());
+        let mut report = Report::new(&scene, &subjects, &outcome, &summary, done.as_ref().err());
+        report.plan = plan.as_ref().map(|plan| explain::report(plan, &subjects));
         print::json(&report)?;
     } else {
-        print::out(&tables(&scene, &subjects, &outcome, &summary, done.is_ok()))?;
+        let mut text = tables(&scene, &subjects, &outcome, &summary, done.is_ok());
+        if let Some(plan) = &plan {
+            text += &explain::table(plan, &subjects);
+        }
+        print::out(&text)?;
     }
     if let Some(page) = page {
         if let Err(error) = &done {
@@ -64,6 +78,16 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         view::serve(&page, &arguments.serve, arguments.json)?;
     }
     Ok(done?)
+}
+
+/// A scene that states an accuracy needs a plan; one that states a method has one where the user
+/// wants to read it.
+fn plan(scene: &Scene, explain: bool) -> anyhow::Result<Option<Plan>> {
+    let needed = matches!(scene.stepping, Stepping::Accuracy(_));
+    match needed || explain {
+        true => Ok(Some(Plan::of(scene)?)),
+        false => Ok(None),
+    }
 }
 
 fn tables(
@@ -76,7 +100,7 @@ fn tables(
     let mut text = format!(
         "{}\nmethod {}, step {} s; steps: {}, bodies: {}\n",
         scene.title,
-        scene.method.info().name,
+        scene.stepping.name(),
         scene.step,
         outcome.steps,
         subjects.len()
@@ -195,6 +219,9 @@ struct Report<'a> {
     blows: Vec<BlowReport<'a>>,
     bodies: Vec<BodyReport<'a>>,
     recording: RecordingReport,
+    /// How it was stepped, where that was planned.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    plan: Option<explain::Report>,
     /// Why it stopped before its end.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
@@ -270,7 +297,7 @@ impl<'a> Report<'a> {
         Self {
             scene: &scene.name,
             title: &scene.title,
-            method: scene.method.info().name,
+            method: scene.stepping.name(),
             step: scene.step,
             steps: outcome.steps,
             duration: scene.duration,
@@ -281,6 +308,7 @@ impl<'a> Report<'a> {
                 bytes: summary.bytes,
                 rows: summary.rows,
             },
+            plan: None,
             error: error.map(ToString::to_string),
         }
     }

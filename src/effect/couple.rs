@@ -12,6 +12,10 @@ pub struct Couple {
 }
 
 impl Effect for Couple {
+    fn name(&self) -> &'static str {
+        "torque"
+    }
+
     fn add(&self, _t: f64, _: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {
         let tau_w = self.torque.vector_w(&state.get(self.lane));
         wrench.add_torque(self.lane, tau_w);

@@ -27,6 +27,10 @@ struct Gravity {
 }
 
 impl Effect for Gravity {
+    fn name(&self) -> &'static str {
+        "gravity"
+    }
+
     fn add(&self, _t: f64, inertial: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {
         for lane in 0..LANES {
             let (body, state) = (inertial.get(lane), state.get(lane));

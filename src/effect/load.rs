@@ -67,6 +67,14 @@ impl Load {
         self.gyroscopic
     }
 
+    /// The names of everything that is active, the model's terms included.
+    pub fn names(&self) -> Vec<&'static str> {
+        let model = self.gyroscopic.then_some("gyroscopic");
+        let decay = self.decay.map(|_| "damping");
+        let effects = self.effects.iter().map(|effect| effect.name());
+        model.into_iter().chain(decay).chain(effects).collect()
+    }
+
     /// Whether any force or torque is applied.
     pub fn applies(&self) -> bool {
         !self.effects.is_empty()

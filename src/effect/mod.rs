@@ -24,6 +24,9 @@ use std::sync::Arc;
 
 /// A source of force and torque on a block of bodies.
 pub trait Effect: Debug + Send + Sync {
+    /// As people call it.
+    fn name(&self) -> &'static str;
+
     /// Adds this effect's force (N) and torque about the reference point (N·m), world axes,
     /// at time `t` (s) and the given states.
     fn add(&self, t: f64, inertial: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock);

@@ -14,6 +14,10 @@ pub struct Push {
 }
 
 impl Effect for Push {
+    fn name(&self) -> &'static str {
+        "push"
+    }
+
     fn add(&self, _t: f64, _: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {
         let state = state.get(self.lane);
         let force_w = self.force.vector_w(&state);

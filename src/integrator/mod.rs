@@ -13,8 +13,11 @@ mod explicit_euler;
 mod info;
 mod lie_midpoint;
 mod one_step;
+mod pieces;
 mod rk4;
 mod semi_implicit;
+
+pub use pieces::Pieces;
 
 pub use info::{Accepts, Cost, Damping, Kind, MethodInfo, Refusal};
 

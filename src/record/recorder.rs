@@ -66,7 +66,21 @@ impl Recorder {
         heading: &Heading,
         subjects: &[Subject],
     ) -> Result<Self, RecordError> {
-        let mut file = RrdFile::create(path, &heading.id)?;
+        Self::into_file(RrdFile::create(path, &heading.id)?, path, heading, subjects)
+    }
+
+    /// Records to nowhere, to learn from its summary how large a recording is.
+    pub fn nowhere(heading: &Heading, subjects: &[Subject]) -> Result<Self, RecordError> {
+        let file = RrdFile::nowhere(&heading.id)?;
+        Self::into_file(file, Path::new(""), heading, subjects)
+    }
+
+    fn into_file(
+        mut file: RrdFile,
+        path: &Path,
+        heading: &Heading,
+        subjects: &[Subject],
+    ) -> Result<Self, RecordError> {
         let setting = Setting { heading, subjects };
         layout::write(&mut file, &setting)?;
         file.begin_recording()?;

@@ -11,9 +11,11 @@ use rerun::external::re_log_types::{
 };
 use rerun::log::{Chunk, ChunkId, RowId};
 use rerun::{AsComponents, EntityPath, TimePoint};
+use std::cell::Cell;
 use std::fs::File;
-use std::io::{BufWriter, Read as _};
+use std::io::{BufWriter, Read as _, Write};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 /// What recordings of this program call themselves; blueprints apply to recordings of one name.
 pub const APPLICATION: &str = "torquescope";
@@ -21,7 +23,8 @@ pub const APPLICATION: &str = "torquescope";
 /// A recording being written.
 pub struct RrdFile {
     path: PathBuf,
-    encoder: Encoder<BufWriter<File>>,
+    encoder: Encoder<Counted>,
+    bytes: Rc<Cell<u64>>,
     recording: StoreId,
     blueprint: StoreId,
     next: u64,
@@ -46,13 +49,36 @@ impl RrdFile {
         };
         let file = File::create(path).map_err(|error| fail(error.to_string()))?;
         let writer = BufWriter::with_capacity(1 << 20, file);
+        Self::into_writer(path, Box::new(writer), recording_id)
+    }
+
+    /// Writes to nowhere, to learn how many bytes a recording takes.
+    pub fn nowhere(recording_id: &str) -> Result<Self, RecordError> {
+        let path = Path::new("a recording to nowhere");
+        Self::into_writer(path, Box::new(std::io::sink()), recording_id)
+    }
+
+    fn into_writer(
+        path: &Path,
+        inner: Box<dyn Write>,
+        recording_id: &str,
+    ) -> Result<Self, RecordError> {
+        let bytes = Rc::new(Cell::new(0));
+        let writer = Counted {
+            inner,
+            bytes: Rc::clone(&bytes),
+        };
         let options = EncodingOptions::PROTOBUF_COMPRESSED;
-        let encoder = Encoder::new_eager(CrateVersion::LOCAL, options, writer)
-            .map_err(|error| fail(error.to_string()))?;
+        let encoder = Encoder::new_eager(CrateVersion::LOCAL, options, writer);
+        let encoder = encoder.map_err(|error| RecordError::Create {
+            path: path.display().to_string(),
+            why: error.to_string(),
+        })?;
         let blueprint_id = format!("{recording_id}-blueprint");
         let mut file = Self {
             path: path.to_owned(),
             encoder,
+            bytes,
             recording: StoreId::new(StoreKind::Recording, APPLICATION, recording_id),
             blueprint: StoreId::new(StoreKind::Blueprint, APPLICATION, blueprint_id),
             next: 1,
@@ -135,9 +161,7 @@ impl RrdFile {
             .finish()
             .and_then(|()| self.encoder.flush_blocking());
         done.map_err(|error| self.stopped(&error))?;
-        let metadata = std::fs::metadata(&self.path);
-        let metadata = metadata.map_err(|error| self.stopped(&error))?;
-        Ok((metadata.len(), self.rows))
+        Ok((self.bytes.get(), self.rows))
     }
 
     fn stopped(&self, error: &dyn std::fmt::Display) -> RecordError {
@@ -194,6 +218,24 @@ impl RrdFile {
     fn number(&mut self) -> u128 {
         self.next += 1;
         (1 << 64) | u128::from(self.next)
+    }
+}
+
+/// Counts the bytes that go through.
+struct Counted {
+    inner: Box<dyn Write>,
+    bytes: Rc<Cell<u64>>,
+}
+
+impl Write for Counted {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.inner.write(bytes)?;
+        self.bytes.set(self.bytes.get() + written as u64);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.inner.flush()
     }
 }
 

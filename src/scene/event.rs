@@ -3,7 +3,10 @@
 use super::body::{self, Bodies, Body};
 use super::problem::Problems;
 use super::table::{Node, Table};
-use nalgebra::Vector3;
+use crate::body::Inertial;
+use crate::effect::{Couple, Effect, Frame, Push};
+use nalgebra::{UnitQuaternion, Vector3};
+use std::sync::Arc;
 
 /// Something done to a body at an exact time.
 #[derive(Clone, Debug)]
@@ -34,11 +37,60 @@ pub enum Action {
 }
 
 impl Action {
+    /// What it is called in messages and in the log.
+    pub fn noun(&self) -> &'static str {
+        match self {
+            Self::Push { .. } => "push",
+            Self::Torque { .. } => "torque",
+            Self::Impulse { .. } => "impulse",
+            Self::AngularImpulse { .. } => "angular impulse",
+        }
+    }
+
     /// How long it lasts, s; 0 for an instant.
     pub fn lasts(&self) -> f64 {
         match *self {
             Action::Push { lasts, .. } | Action::Torque { lasts, .. } => lasts,
             Action::Impulse { .. } | Action::AngularImpulse { .. } => 0.0,
+        }
+    }
+}
+
+impl Event {
+    /// The push that acts while the event lasts, on a lane of a block.
+    pub fn push(
+        &self,
+        lane: usize,
+        inertial: &Inertial,
+        q_pb: UnitQuaternion<f64>,
+    ) -> Option<Push> {
+        match self.action {
+            Action::Push { force, point, .. } => Some(Push {
+                lane,
+                force: force.direction(q_pb),
+                point: point.point(inertial, q_pb),
+            }),
+            _ => None,
+        }
+    }
+
+    /// What acts while the event lasts; nothing where it is an instant.
+    pub fn effect(
+        &self,
+        lane: usize,
+        inertial: &Inertial,
+        q_pb: UnitQuaternion<f64>,
+    ) -> Option<Arc<dyn Effect>> {
+        match self.action {
+            Action::Push { .. } => {
+                let push = self.push(lane, inertial, q_pb)?;
+                Some(Arc::new(push))
+            }
+            Action::Torque { torque, .. } => Some(Arc::new(Couple {
+                lane,
+                torque: torque.direction(q_pb),
+            })),
+            Action::Impulse { .. } | Action::AngularImpulse { .. } => None,
         }
     }
 }
@@ -49,6 +101,24 @@ pub enum Framed {
     World(Vector3<f64>),
     /// Body axes; a point counts from the centre of mass.
     Body(Vector3<f64>),
+}
+
+impl Framed {
+    /// As a direction in world or principal axes.
+    pub fn direction(self, q_pb: UnitQuaternion<f64>) -> Frame {
+        match self {
+            Self::World(v) => Frame::World(v),
+            Self::Body(v) => Frame::Principal(q_pb * v),
+        }
+    }
+
+    /// As a point in the world, or from the reference point in principal axes.
+    pub fn point(self, inertial: &Inertial, q_pb: UnitQuaternion<f64>) -> Frame {
+        match self {
+            Self::World(p) => Frame::World(p),
+            Self::Body(p) => Frame::Principal(q_pb * p + inertial.centre_p),
+        }
+    }
 }
 
 /// The scene's times, as far as they are right: s.

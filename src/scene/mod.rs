@@ -5,12 +5,14 @@
 
 mod body;
 mod event;
+mod pairing;
 mod problem;
 mod read;
 mod table;
 
 pub use body::Body;
 pub use event::{Action, Event, Framed};
+pub(crate) use pairing::lasting;
 pub use problem::Problems;
 
 use crate::effect::Called;
@@ -32,16 +34,37 @@ pub struct Scene {
     pub fingerprint: u64,
     /// s.
     pub duration: f64,
-    pub method: &'static dyn Method,
-    /// s.
+    pub stepping: Stepping,
+    /// Of the clock, s: what a method of fixed steps takes, and how often a state can be recorded.
     pub step: f64,
-    /// Error a step that a method with steps of its own may make, relative to the state.
-    pub tolerance: f64,
     pub record: Record,
     /// The effects that are called for; those switched off are not here.
     pub effects: Vec<(&'static str, Called)>,
     pub bodies: Vec<Body>,
     pub events: Vec<Event>,
+}
+
+/// How bodies get through time.
+#[derive(Clone, Copy)]
+pub enum Stepping {
+    /// By this method.
+    Method {
+        method: &'static dyn Method,
+        /// Error a step that a method with steps of its own may make, relative to the state.
+        tolerance: f64,
+    },
+    /// By whatever is cheapest of what keeps attitudes this true, rad.
+    Accuracy(f64),
+}
+
+impl Stepping {
+    /// In a word.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Method { method, .. } => method.info().name,
+            Self::Accuracy(_) => "chosen by accuracy",
+        }
+    }
 }
 
 /// What is recorded, and how often.
@@ -52,6 +75,16 @@ pub struct Record {
     pub rate: f64,
     pub state: StateRate,
     pub streams: StreamSet,
+}
+
+impl Record {
+    /// The highest rate that is asked for, 1/s; every step counts as the derived streams' rate.
+    fn fastest(&self) -> f64 {
+        match self.state {
+            StateRate::EveryStep => self.rate,
+            StateRate::PerSecond(rate) => rate.max(self.rate),
+        }
+    }
 }
 
 /// How often the state (pose and angular velocity) is recorded.
@@ -89,6 +122,12 @@ impl Scene {
             |stem| stem.to_string_lossy().into_owned(),
         );
         Ok(Self::parse(&file, &name, &source)?)
+    }
+
+    /// Why the scene's method does not take the torques it has; a scene that was parsed has no such
+    /// reason, one that was given another method may.
+    pub fn refusal(&self) -> Option<String> {
+        pairing::refusal(self)
     }
 
     /// Checks the text of a scene; `file` is how messages call it.

@@ -2,7 +2,7 @@
 
 use super::problem::Problems;
 use super::table::{Node, Table, nearest};
-use super::{Record, Scene, StateRate, body, event};
+use super::{Record, Scene, StateRate, Stepping, body, event, pairing};
 use crate::effect::{Argument, Called, EFFECTS, EffectKind, Value};
 use crate::integrator::{self, DEFAULT_METHOD, Kind, METHODS, Method};
 use crate::trace::{STREAMS, StreamSet};
@@ -53,8 +53,9 @@ fn read(top: &Table<'_>, name: &str, source: &str, problems: &mut Problems) -> O
         .and_then(|node| node.str(problems))
         .unwrap_or(name);
     let duration = duration(top, problems);
-    let (method, step, tolerance) = stepping(top, duration, problems);
     let (record, rate_chosen) = record(top, problems);
+    let clock = record.as_ref().map_or(DEFAULT_RATE, Record::fastest);
+    let (stepping, step) = stepping(top, duration, clock, problems);
     let effects = effects(top, step.unwrap_or(DEFAULT_STEP), problems);
     let gyroscopic = effects.iter().any(|(name, _)| *name == "gyroscopic");
     let bodies = body::read_all(&top.tables("body", problems), gyroscopic, problems);
@@ -74,20 +75,21 @@ fn read(top: &Table<'_>, name: &str, source: &str, problems: &mut Problems) -> O
     }
     let clock = event::Clock { duration, step };
     let events = event::read_all(&events, &bodies, clock, problems);
-    Some(Scene {
+    let scene = Scene {
         name: name.to_owned(),
         title: title.replace(char::is_control, " "),
         notes: opening_comment(source),
         fingerprint: fingerprint(source),
         duration: duration?,
-        method: method?,
+        stepping: stepping?,
         step: step?,
-        tolerance: tolerance?,
         record: record?,
         effects,
         bodies: bodies.into_valid()?,
         events,
-    })
+    };
+    pairing::check(&scene, top, problems);
+    Some(scene)
 }
 
 fn duration(top: &Table<'_>, problems: &mut Problems) -> Option<f64> {
@@ -114,23 +116,45 @@ fn duration(top: &Table<'_>, problems: &mut Problems) -> Option<f64> {
     Some(duration)
 }
 
+/// How to step, and the clock's step. A scene that asks for an accuracy is on the clock of its
+/// recording, `rate` instants a second.
 fn stepping(
     top: &Table<'_>,
     duration: Option<f64>,
+    rate: f64,
     problems: &mut Problems,
-) -> (Option<&'static dyn Method>, Option<f64>, Option<f64>) {
-    let default = integrator::find(DEFAULT_METHOD);
-    let default_step = DEFAULT_STEP.min(duration.unwrap_or(DEFAULT_STEP));
-    let Some(table) = top.table("stepping", problems) else {
-        return (default, Some(default_step), Some(DEFAULT_TOLERANCE));
+) -> (Option<Stepping>, Option<f64>) {
+    let default = |tolerance| {
+        integrator::find(DEFAULT_METHOD).map(|method| Stepping::Method { method, tolerance })
     };
+    let longest = duration.unwrap_or(f64::INFINITY);
+    let default_step = DEFAULT_STEP.min(longest);
+    let Some(table) = top.table("stepping", problems) else {
+        return (default(DEFAULT_TOLERANCE), Some(default_step));
+    };
+    if let Some(node) = table.get("accuracy") {
+        let accuracy = accuracy(&node, problems);
+        for key in ["method", "step", "tolerance"] {
+            if let Some(node) = table.get(key) {
+                let why =
+                    "beside accuracy: with an accuracy the program chooses; keep one of the two";
+                node.problem(why, problems);
+            }
+        }
+        table.check_keys(problems);
+        let step = (1.0 / rate).clamp(SHORTEST_STEP, longest.max(SHORTEST_STEP));
+        return (accuracy.map(Stepping::Accuracy), Some(step));
+    }
     let method = match table.get("method") {
-        None => default,
+        None => integrator::find(DEFAULT_METHOD),
         Some(node) => node.str(problems).and_then(|name| {
             let found = integrator::find(name);
             if found.is_none() {
-                let names: Vec<&str> = METHODS.iter().map(|m| m.info().name).collect();
-                let remedy = nearest(name, &names);
+                let names = METHODS.iter().flat_map(|m| {
+                    let info = m.info();
+                    std::iter::once(info.name).chain(info.engines.iter().copied())
+                });
+                let remedy = nearest(name, &names.collect::<Vec<_>>());
                 node.problem(format!("is no method; {remedy}"), problems);
             }
             found
@@ -138,27 +162,46 @@ fn stepping(
     };
     let step = match table.get("step") {
         None => Some(default_step),
-        Some(node) => node.positive("s", problems).filter(|&step| {
-            let steps = duration.unwrap_or(0.0) / step;
-            let why = if step < SHORTEST_STEP {
-                format!("is below a nanosecond, the finest time a recording tells apart ({SHORTEST_STEP:e} s)")
-            } else if steps < 1.0 && duration.is_some() {
-                "is longer than the scene".to_owned()
-            } else if steps > MOST_STEPS {
-                format!("makes {steps:.1e} steps of this scene; at most {MOST_STEPS:e} can be counted")
-            } else {
-                return true;
-            };
-            node.problem(why, problems);
-            false
-        }),
+        Some(node) => step(&node, duration, problems),
     };
     let tolerance = match table.get("tolerance") {
         None => Some(DEFAULT_TOLERANCE),
         Some(node) => tolerance(&node, method, problems),
     };
     table.check_keys(problems);
-    (method, step, tolerance)
+    let stepping = method.zip(tolerance);
+    let stepping = stepping.map(|(method, tolerance)| Stepping::Method { method, tolerance });
+    (stepping, step)
+}
+
+fn step(node: &Node<'_>, duration: Option<f64>, problems: &mut Problems) -> Option<f64> {
+    let step = node.positive("s", problems)?;
+    let steps = duration.unwrap_or(0.0) / step;
+    let why = if step < SHORTEST_STEP {
+        format!(
+            "is below a nanosecond, the finest time a recording tells apart ({SHORTEST_STEP:e} s)"
+        )
+    } else if steps < 1.0 && duration.is_some() {
+        "is longer than the scene".to_owned()
+    } else if steps > MOST_STEPS {
+        format!("makes {steps:.1e} steps of this scene; at most {MOST_STEPS:e} can be counted")
+    } else {
+        return Some(step);
+    };
+    node.problem(why, problems);
+    None
+}
+
+fn accuracy(node: &Node<'_>, problems: &mut Problems) -> Option<f64> {
+    let accuracy = node.positive("rad", problems)?;
+    if accuracy > 1.0 {
+        node.problem(
+            "is more than a radian: no motion is known by that; ask for less",
+            problems,
+        );
+        return None;
+    }
+    Some(accuracy)
 }
 
 fn tolerance(

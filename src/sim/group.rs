@@ -1,15 +1,15 @@
 //! Up to eight bodies stepped together, and their translation to and from body axes.
 
 use super::Jump;
+use super::choose::{Choose, Setting};
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
-use crate::effect::{Called, Couple, Effect, Frame, Load, Push, WrenchBlock};
-use crate::integrator::{Interval, Method, Step, Stepper, Work};
+use crate::effect::{Load, Push, WrenchBlock};
+use crate::integrator::{Interval, Pieces, Step, Stepper, Work};
 use crate::mass::tensor;
-use crate::scene::{Action, Body, Event, Framed, Scene};
+use crate::scene::{Body, Event, Framed, Scene, lasting};
 use crate::trace::{Motion, PointForce, Sample, Subject};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
-use std::sync::Arc;
 
 #[derive(Clone)]
 pub struct Group {
@@ -27,6 +27,8 @@ pub struct Group {
     /// The stepper before the stretch that is being taken, and the states kept of it.
     before: Option<Box<dyn Stepper>>,
     kept: Vec<StateBlock>,
+    /// By name.
+    pub method: &'static str,
     /// What the steppers before this one did.
     done: Work,
 }
@@ -64,12 +66,12 @@ pub fn subject(body: &Body) -> Subject {
     }
 }
 
-/// The bodies of a scene in groups of eight, as the scene starts them.
-pub fn groups(bodies: &[Body]) -> Vec<Group> {
-    let starts = (0..bodies.len()).step_by(LANES);
+/// The bodies of a scene in groups of `width` (at most eight), as the scene starts them.
+pub fn groups(bodies: &[Body], width: usize) -> Vec<Group> {
+    let starts = (0..bodies.len()).step_by(width);
     starts
         .map(|start| {
-            let members = start..(start + LANES).min(bodies.len());
+            let members = start..(start + width).min(bodies.len());
             Group::new(members.clone(), &bodies[members])
         })
         .collect()
@@ -87,6 +89,7 @@ impl Group {
             stepper: None,
             before: None,
             kept: Vec::new(),
+            method: "",
             done: Work::default(),
         };
         for (lane, body) in bodies.iter().enumerate() {
@@ -98,17 +101,30 @@ impl Group {
         group
     }
 
-    /// Sets out from here, at time `t`, with a method that may look ahead to `until`.
-    pub fn set_out(&mut self, method: &dyn Method, tolerance: f64, t: f64, until: f64) {
-        let interval = Interval {
+    /// Sets out from here, at time `t`, by the way that is chosen for the time `until` the next
+    /// event.
+    pub fn set_out(&mut self, chooser: &mut dyn Choose, t: f64, until: f64) {
+        let mut interval = Interval {
             load: self.load.clone(),
             inertial: self.inertial,
             bodies: self.members.len(),
             until,
-            tolerance,
+            tolerance: 0.0,
         };
+        let choice = chooser.choose(&Setting {
+            members: self.members.clone(),
+            interval: &interval,
+            from: t,
+            state: &self.state,
+        });
+        interval.tolerance = choice.tolerance;
         self.done = self.work();
-        self.stepper = Some(method.start(interval, t, &self.state));
+        self.method = choice.method.info().name;
+        let stepper = choice.method.start(interval, t, &self.state);
+        self.stepper = Some(match choice.pieces {
+            1 => stepper,
+            pieces => Box::new(Pieces::new(stepper, pieces)),
+        });
     }
 
     /// Takes a stretch of steps. Where a body's state is lost it stops after that step: how many
@@ -189,36 +205,17 @@ impl Group {
 
     /// The effects of the scene and the active events that concern this group.
     pub fn load(&mut self, scene: &Scene, active: &[usize]) {
-        self.load = Load::default();
+        self.load = lasting(scene);
         self.pushes.clear();
-        for (_, effect) in &scene.effects {
-            match effect {
-                Called::Load(effect) => self.load.push(Arc::clone(effect)),
-                Called::Decay(decay) => self.load.set_decay(*decay),
-                Called::Gyroscopic => self.load.set_gyroscopic(),
-                Called::Off => {}
-            }
-        }
         for event in active.iter().map(|&k| &scene.events[k]) {
             if !self.members.contains(&event.body) {
                 continue;
             }
             let lane = event.body - self.members.start;
-            match event.action {
-                Action::Push { force, point, .. } => {
-                    let push = Push {
-                        lane,
-                        force: self.direction(lane, force),
-                        point: self.point(lane, point),
-                    };
-                    self.pushes.push(push);
-                    self.load.push(Arc::new(push) as Arc<dyn Effect>);
-                }
-                Action::Torque { torque, .. } => {
-                    let torque = self.direction(lane, torque);
-                    self.load.push(Arc::new(Couple { lane, torque }));
-                }
-                Action::Impulse { .. } | Action::AngularImpulse { .. } => {}
+            let (inertial, q_pb) = (self.inertial.get(lane), self.q_pb[lane]);
+            self.pushes.extend(event.push(lane, &inertial, q_pb));
+            if let Some(effect) = event.effect(lane, &inertial, q_pb) {
+                self.load.push(effect);
             }
         }
     }
@@ -226,15 +223,12 @@ impl Group {
     /// The torque about the reference point that an event applies by itself, world, N·m.
     pub fn torque_of(&self, event: &Event) -> Vector3<f64> {
         let lane = event.body - self.members.start;
-        let state = self.state.get(lane);
-        match event.action {
-            Action::Push { force, point, .. } => {
-                let arm_w = self.point(lane, point).point_w(&state) - state.x_w;
-                arm_w.cross(&self.direction(lane, force).vector_w(&state))
-            }
-            Action::Torque { torque, .. } => self.direction(lane, torque).vector_w(&state),
-            Action::Impulse { .. } | Action::AngularImpulse { .. } => Vector3::zeros(),
-        }
+        let Some(effect) = event.effect(lane, &self.inertial.get(lane), self.q_pb[lane]) else {
+            return Vector3::zeros();
+        };
+        let mut wrench = WrenchBlock::default();
+        effect.add(event.at, &self.inertial, &self.state, &mut wrench);
+        wrench.get(lane).tau_w
     }
 
     /// An impulse at a point (N·s) or, without one, an angular impulse (N·m·s):
@@ -243,10 +237,11 @@ impl Group {
         let lane = index - self.members.start;
         let mut state = self.state.get(lane);
         let inertial = self.inertial.get(lane);
-        let impulse_w = self.direction(lane, impulse).vector_w(&state);
+        let q_pb = self.q_pb[lane];
+        let impulse_w = impulse.direction(q_pb).vector_w(&state);
         let strike = point.map(|point| PointForce {
             force_w: impulse_w,
-            point_w: self.point(lane, point).point_w(&state),
+            point_w: point.point(&inertial, q_pb).point_w(&state),
         });
         let angular_w = match strike {
             None => impulse_w,
@@ -336,23 +331,6 @@ impl Group {
             velocity_w: state.v_w + state.omega_w.cross(&arm_w),
             q_wb: q_wp * self.q_pb[lane],
             omega_w: state.omega_w,
-        }
-    }
-
-    fn direction(&self, lane: usize, vector: Framed) -> Frame {
-        match vector {
-            Framed::World(v) => Frame::World(v),
-            Framed::Body(v) => Frame::Principal(self.q_pb[lane] * v),
-        }
-    }
-
-    fn point(&self, lane: usize, point: Framed) -> Frame {
-        match point {
-            Framed::World(p) => Frame::World(p),
-            Framed::Body(p) => {
-                let from_centre_p = self.q_pb[lane] * p;
-                Frame::Principal(from_centre_p + self.inertial.get(lane).centre_p)
-            }
         }
     }
 }

@@ -1,15 +1,17 @@
 //! Level 5: the loop. Land on event times, step, sample, deliver.
 
+mod choose;
 mod group;
 mod schedule;
 mod script;
 mod sizes;
 
+pub use choose::{Choice, Choose, Setting, Stated};
 pub use sizes::Sizes;
 
 use crate::body::LANES;
 use crate::integrator::{Step, Work};
-use crate::scene::{Action, Scene};
+use crate::scene::{Action, Scene, Stepping};
 use crate::trace::{
     Instant, Motion, Note, NoteKind, PointForce, Sample, Sink, SinkError, Subject, Track, short,
 };
@@ -23,6 +25,8 @@ pub struct Simulation<'s> {
     scene: &'s Scene,
     subjects: Vec<Subject>,
     groups: Vec<Group>,
+    /// Bodies in a group.
+    width: usize,
     /// Indices of the events that act now.
     active: Vec<usize>,
     threads: usize,
@@ -81,16 +85,25 @@ pub enum SimError {
         method: &'static str,
         cause: String,
     },
+    #[error("the scene states an accuracy and no method: it has to be planned first")]
+    Undecided,
     #[error(transparent)]
     Sink(#[from] SinkError),
 }
 
 impl<'s> Simulation<'s> {
+    /// Eight bodies go together by one method. Where a scene states an accuracy each goes alone, so
+    /// that each has the method it needs.
     pub fn new(scene: &'s Scene) -> Self {
+        let width = match scene.stepping {
+            Stepping::Method { .. } => LANES,
+            Stepping::Accuracy(_) => 1,
+        };
         let mut simulation = Self {
             scene,
             subjects: scene.bodies.iter().map(group::subject).collect(),
-            groups: group::groups(&scene.bodies),
+            groups: group::groups(&scene.bodies, width),
+            width,
             active: Vec::new(),
             threads: std::thread::available_parallelism().map_or(1, usize::from),
         };
@@ -135,12 +148,24 @@ impl<'s> Simulation<'s> {
         sizes
     }
 
-    /// Steps the scene from its start to its end. The outcome tells what there was until it
-    /// ended or stopped.
-    pub fn run(mut self, sink: &mut dyn Sink) -> (Outcome, Result<(), SimError>) {
+    /// Steps the scene from its start to its end by the method that it states. The outcome tells
+    /// what there was until it ended or stopped.
+    pub fn run(self, sink: &mut dyn Sink) -> (Outcome, Result<(), SimError>) {
+        match Stated::of(self.scene) {
+            Some(mut stated) => self.run_by(&mut stated, sink),
+            None => (Outcome::default(), Err(SimError::Undecided)),
+        }
+    }
+
+    /// The same by the ways that `chooser` chooses.
+    pub fn run_by(
+        mut self,
+        chooser: &mut dyn Choose,
+        sink: &mut dyn Sink,
+    ) -> (Outcome, Result<(), SimError>) {
         let mut outcome = Outcome::default();
         let mut schedule = Schedule::new(self.scene);
-        let done = self.play(&mut schedule, &mut outcome, sink);
+        let done = self.play(&mut schedule, chooser, &mut outcome, sink);
         let now = schedule.now();
         outcome.steps = now.step;
         let works = self.groups.iter().map(Group::work);
@@ -152,6 +177,7 @@ impl<'s> Simulation<'s> {
     fn play(
         &mut self,
         schedule: &mut Schedule<'_>,
+        chooser: &mut dyn Choose,
         outcome: &mut Outcome,
         sink: &mut dyn Sink,
     ) -> Result<(), SimError> {
@@ -161,7 +187,7 @@ impl<'s> Simulation<'s> {
         sink.samples(start, 0..self.subjects.len(), &self.samples(start.time))?;
         let all: Vec<usize> = (0..self.subjects.len()).collect();
         self.must_be_finite(start, &all, sink)?;
-        self.set_out(&all, schedule);
+        self.set_out(&all, schedule, chooser);
         loop {
             let first = schedule.now();
             let Some(stretch) = schedule.next_stretch() else {
@@ -185,13 +211,13 @@ impl<'s> Simulation<'s> {
             }
             self.deliver_bodies(now, &touched, sink)?;
             self.must_be_finite(now, &touched, sink)?;
-            self.set_out(&touched, schedule);
+            self.set_out(&touched, schedule, chooser);
         }
     }
 
     /// Starts the method of the groups of these bodies: from now until an event touches them.
-    fn set_out(&mut self, bodies: &[usize], schedule: &Schedule<'_>) {
-        let mut groups: Vec<usize> = bodies.iter().map(|body| body / LANES).collect();
+    fn set_out(&mut self, bodies: &[usize], schedule: &Schedule<'_>, chooser: &mut dyn Choose) {
+        let mut groups: Vec<usize> = bodies.iter().map(|body| body / self.width).collect();
         groups.dedup();
         let now = schedule.now().time;
         for group in groups {
@@ -199,7 +225,7 @@ impl<'s> Simulation<'s> {
             let touches =
                 |happening: Happening| members.contains(&self.scene.events[happening.event()].body);
             let until = schedule.until(touches);
-            self.groups[group].set_out(self.scene.method, self.scene.tolerance, now, until);
+            self.groups[group].set_out(chooser, now, until);
         }
     }
 
@@ -297,7 +323,7 @@ impl<'s> Simulation<'s> {
             body: self.subjects[body].name.clone(),
             time: at.time,
             step: at.step,
-            method: self.scene.method.info().name,
+            method: self.group_of(body).method,
             cause: self.cause(body),
         };
         let note = Note {
@@ -344,7 +370,7 @@ impl<'s> Simulation<'s> {
                 Happening::Ends(k) => self.active.retain(|&active| active != k),
                 Happening::Begins(k) => {
                     let body = self.scene.events[k].body;
-                    *jump = begin(&mut self.groups[body / LANES], self.scene, k);
+                    *jump = begin(&mut self.groups[body / self.width], self.scene, k);
                     if jump.is_none() {
                         self.active.push(k);
                     }
@@ -352,7 +378,7 @@ impl<'s> Simulation<'s> {
             }
         }
         for body in self.touched(happenings) {
-            self.groups[body / LANES].load(self.scene, &self.active);
+            self.groups[body / self.width].load(self.scene, &self.active);
         }
         for (happening, &jump) in happenings.iter().zip(&jumps) {
             let event = &self.scene.events[happening.event()];
@@ -404,7 +430,7 @@ impl<'s> Simulation<'s> {
     }
 
     fn group_of(&self, body: usize) -> &Group {
-        &self.groups[body / LANES]
+        &self.groups[body / self.width]
     }
 
     fn samples(&self, t: f64) -> Vec<Sample> {

@@ -1,7 +1,7 @@
 //! What happens when, and how the log says it.
 
 use super::Jump;
-use crate::scene::{Action, Event, Scene};
+use crate::scene::{Event, Scene};
 use crate::trace::{Note, NoteKind, Sample, Subject, short_vector};
 use nalgebra::Vector3;
 
@@ -48,7 +48,7 @@ pub fn begin_note(
     (tau_w, sample): (Vector3<f64>, &Sample),
     jump: Option<Jump>,
 ) -> Note {
-    let what = format!("{} on {}", noun(&event.action), subject.name);
+    let what = format!("{} on {}", event.action.noun(), subject.name);
     let (text, kind) = match jump {
         Some(jump) => (
             format!(
@@ -78,20 +78,11 @@ pub fn begin_note(
 
 pub fn end_note(event: &Event, subject: &Subject, sample: &Sample) -> Note {
     let omega = short_vector(sample.motion.omega_w);
-    let what = format!("{} on {}", noun(&event.action), subject.name);
+    let what = format!("{} on {}", event.action.noun(), subject.name);
     Note {
         body: event.body,
         text: format!("{what} ends: ω = {omega} rad/s"),
         kind: NoteKind::Ends,
         strike: None,
-    }
-}
-
-fn noun(action: &Action) -> &'static str {
-    match action {
-        Action::Push { .. } => "push",
-        Action::Torque { .. } => "torque",
-        Action::Impulse { .. } => "impulse",
-        Action::AngularImpulse { .. } => "angular impulse",
     }
 }

@@ -1,0 +1,375 @@
+//! `cost SCENE`: what accuracy costs on this scene, by every method.
+
+use super::{Wrong, print};
+use crate::cost::{self, Advice, Cost, Ladder, Progress, Rung, Spread, plot};
+use crate::integrator::{self, METHODS, Method};
+use crate::record::{Heading, Recorder};
+use crate::scene::{Scene, StateRate, Stepping};
+use crate::sim::{Choose, Simulation};
+use crate::trace::short;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Show what accuracy costs in time on a scene, by every method over a ladder of steps.
+///
+/// Each run's attitudes are compared, at fifty instants, with the truest motion there is: the closed
+/// form where nothing turns a body, else the most accurate method, checked by a second one.
+#[derive(clap::Args)]
+#[command(after_help = "Example: torquescope cost scenes/free_top.toml --accuracy 1e-9")]
+pub struct Arguments {
+    /// The scene, a TOML file.
+    scene: PathBuf,
+    /// The accuracy (rad) that the sentence at the end is about [default: the scene's, or 1e-6].
+    #[arg(long, value_name = "RAD")]
+    accuracy: Option<f64>,
+    /// Only these methods, by comma [default: all that take the scene's torques].
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    methods: Vec<String>,
+    /// Where the plots and the recording go: this with .svg, .png and .rrd
+    /// [default: the scene's name with -cost, in the current folder].
+    #[arg(long, value_name = "PREFIX")]
+    out: Option<PathBuf>,
+    /// Print the table alone: no plots, no recording.
+    #[arg(long, conflicts_with = "out")]
+    table: bool,
+    /// Runs of each setting at least; the median counts.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    repeats: u16,
+    /// Settings that would take longer than this many seconds are left out.
+    #[arg(long, value_name = "S", default_value_t = 1.0)]
+    longest: f64,
+    /// Print comma-separated values instead of a table.
+    #[arg(long, conflicts_with = "json")]
+    csv: bool,
+    /// Print one JSON object with every digit instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let scene = Scene::load(&arguments.scene)?;
+    let accuracy = accuracy(arguments, &scene)?;
+    let ladder = Ladder {
+        methods: methods(&arguments.methods)?,
+        repeats: usize::from(arguments.repeats),
+        longest: longest(arguments.longest)?,
+    };
+    let stop = stop_on_interrupt()?;
+    let bar = progress_bar(ladder.methods.len());
+    let mut watch = |progress: Progress| {
+        bar.set_position(progress.done as u64);
+        bar.set_message(progress.method);
+        match stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    };
+    let cost = ladder.measure(&scene, &weigh, &mut watch)?;
+    bar.finish_and_clear();
+    if stop.load(Ordering::Relaxed) {
+        print::err("interrupted: this is what was measured until then");
+    }
+    let advice = cost.advice(accuracy);
+    if arguments.json {
+        print::json(&Report::new(&scene, &cost, &advice))?;
+    } else if arguments.csv {
+        print::out(csv(&cost).trim_end())?;
+    } else {
+        print::out(&table(&scene, &cost, &advice))?;
+    }
+    if !arguments.table {
+        files(arguments, &scene, &cost)?;
+    }
+    Ok(())
+}
+
+fn accuracy(arguments: &Arguments, scene: &Scene) -> anyhow::Result<f64> {
+    let stated = match scene.stepping {
+        Stepping::Accuracy(accuracy) => accuracy,
+        Stepping::Method { .. } => 1e-6,
+    };
+    let accuracy = arguments.accuracy.unwrap_or(stated);
+    if accuracy > 0.0 && accuracy.is_finite() {
+        return Ok(accuracy);
+    }
+    Err(Wrong(format!(
+        "--accuracy {accuracy} is no angle above zero (rad)"
+    ))
+    .into())
+}
+
+fn longest(seconds: f64) -> anyhow::Result<Duration> {
+    Duration::try_from_secs_f64(seconds).map_err(|_| {
+        Wrong(format!(
+            "--longest {seconds} is no time; write seconds, such as 1"
+        ))
+        .into()
+    })
+}
+
+fn methods(names: &[String]) -> anyhow::Result<Vec<&'static dyn Method>> {
+    if names.is_empty() {
+        return Ok(METHODS.to_vec());
+    }
+    let find = |name: &String| {
+        integrator::find(name).ok_or_else(|| {
+            Wrong(format!(
+                "--methods: {name} is no method; `torquescope methods` lists them"
+            ))
+            .into()
+        })
+    };
+    names.iter().map(find).collect()
+}
+
+/// Set by ctrl-C, which then no longer ends the program at once.
+fn stop_on_interrupt() -> anyhow::Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let set = Arc::clone(&stop);
+    ctrlc::set_handler(move || {
+        // A second one means it.
+        if set.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    })?;
+    Ok(stop)
+}
+
+fn progress_bar(methods: usize) -> ProgressBar {
+    let bar = ProgressBar::new(methods as u64);
+    let style = "{bar:30} {pos}/{len} methods, {msg}; {eta} left (ctrl-C: what is done)";
+    if let Ok(style) = ProgressStyle::with_template(style) {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+/// The bytes of the recording of a scene at this step.
+fn weigh(scene: &Scene, chooser: &mut dyn Choose) -> Option<u64> {
+    /// Rows that are worth writing to learn their size.
+    const MOST_ROWS: f64 = 2e5;
+    let rows = scene.duration / scene.step * scene.bodies.len() as f64;
+    if rows > MOST_ROWS {
+        return None;
+    }
+    let mut scene = scene.clone();
+    scene.record.state = StateRate::EveryStep;
+    let simulation = Simulation::new(&scene);
+    let subjects = simulation.subjects().to_vec();
+    let heading = Heading::of(&scene, &simulation);
+    let mut recorder = Recorder::nowhere(&heading, &subjects).ok()?;
+    let (_, done) = simulation.run_by(chooser, &mut recorder);
+    done.ok()?;
+    Some(recorder.finish().ok()?.bytes)
+}
+
+fn table(scene: &Scene, cost: &Cost, advice: &Advice<'_>) -> String {
+    let header = [
+        "",
+        "method",
+        "step or tolerance",
+        "attitude error (rad)",
+        "energy drift",
+        "momentum drift",
+        "time per simulated s",
+        "spread",
+        "evaluations per s",
+        "recording",
+    ];
+    let rows = cost.rungs.iter().map(row).collect();
+    let mut text = format!(
+        "{}\n{} s; attitudes compared at {} instants with {}\n",
+        scene.title,
+        short(cost.duration),
+        cost.instants,
+        truth(cost)
+    );
+    text += &print::table(&header, rows);
+    text += "\n* no other setting is both cheaper and truer\n";
+    for (method, why) in &cost.refused {
+        text += &format!("not {method}: {why}\n");
+    }
+    text += &format!("\n{advice}");
+    text
+}
+
+/// What the runs were compared with, and how far that can be believed.
+fn truth(cost: &Cost) -> String {
+    let by = cost.by.join(", ");
+    let off = two(cost.uncertainty);
+    match cost.checked_by.is_empty() {
+        true => format!("the exact motion ({by}, good to {off} rad)"),
+        false => format!(
+            "{by} at its tightest; {} differs from it by {off} rad",
+            cost.checked_by.join(", ")
+        ),
+    }
+}
+
+fn row(rung: &Rung) -> Vec<String> {
+    let front = if rung.on_front { "*" } else { "" };
+    let setting = match (rung.step, rung.tolerance) {
+        (Some(step), _) => cost::time(step),
+        (None, Some(tolerance)) => format!("{tolerance:.0e}"),
+        (None, None) => "any time at once".to_owned(),
+    };
+    let lost = !rung.error.is_finite();
+    let number = |x: f64| if lost { "lost".to_owned() } else { two(x) };
+    let Spread {
+        least,
+        median,
+        most,
+    } = rung.time;
+    vec![
+        front.to_owned(),
+        rung.method.to_owned(),
+        setting,
+        number(rung.error),
+        number(rung.energy_drift),
+        number(rung.momentum_drift),
+        cost::time(median),
+        format!("{} … {}", cost::time(least), cost::time(most)),
+        match rung.evaluations {
+            0.0 => "–".to_owned(),
+            n => short(n.round()),
+        },
+        rung.bytes.map_or("–".to_owned(), size),
+    ]
+}
+
+/// Two significant digits.
+fn two(x: f64) -> String {
+    format!("{x:.1e}")
+}
+
+fn size(bytes: u64) -> String {
+    match bytes {
+        0..10_000 => format!("{bytes} B"),
+        10_000..10_000_000 => format!("{} kB", bytes / 1000),
+        _ => format!("{} MB", bytes / 1_000_000),
+    }
+}
+
+fn csv(cost: &Cost) -> String {
+    let mut text = "method,step_s,tolerance,attitude_error_rad,energy_drift,momentum_drift,\
+                    time_per_simulated_s,time_least,time_most,evaluations_per_simulated_s,\
+                    steps_per_simulated_s,recording_bytes,on_front\n"
+        .to_owned();
+    let or_nothing = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:?}"));
+    for rung in &cost.rungs {
+        text += &format!(
+            "{},{},{},{:?},{:?},{:?},{:?},{:?},{:?},{:?},{:?},{},{}\n",
+            rung.method,
+            or_nothing(rung.step),
+            or_nothing(rung.tolerance),
+            rung.error,
+            rung.energy_drift,
+            rung.momentum_drift,
+            rung.time.median,
+            rung.time.least,
+            rung.time.most,
+            rung.evaluations,
+            rung.steps,
+            rung.bytes.map_or(String::new(), |bytes| bytes.to_string()),
+            rung.on_front
+        );
+    }
+    text
+}
+
+/// Writes the plots and the recording and says where they are.
+fn files(arguments: &Arguments, scene: &Scene, cost: &Cost) -> anyhow::Result<()> {
+    let prefix = match &arguments.out {
+        Some(path) => path.clone(),
+        None => PathBuf::from(format!("{}-cost", scene.name)),
+    };
+    let with = |ending: &str| {
+        let mut name = prefix.clone().into_os_string();
+        name.push(ending);
+        PathBuf::from(name)
+    };
+    let title = format!("{}: what accuracy costs", scene.title);
+    let (svg, png) = (with(".svg"), with(".png"));
+    plot::svg(cost, &title, &svg)?;
+    plot::png(cost, &title, &png)?;
+    print::err(&format!("{}, {}", svg.display(), png.display()));
+    Ok(())
+}
+
+/// What `--json` prints. A number that is not finite is null.
+#[derive(Serialize)]
+struct Report<'a> {
+    scene: &'a str,
+    title: &'a str,
+    duration: f64,
+    instants: usize,
+    reference: Vec<&'static str>,
+    checked_by: Vec<&'static str>,
+    uncertainty: f64,
+    rungs: Vec<RungReport>,
+    refused: Vec<RefusalReport<'a>>,
+    accuracy: f64,
+    advice: String,
+}
+
+#[derive(Serialize)]
+struct RungReport {
+    method: &'static str,
+    step: Option<f64>,
+    tolerance: Option<f64>,
+    attitude_error: f64,
+    energy_drift: f64,
+    momentum_drift: f64,
+    /// s a simulated second: median, least, most.
+    time: [f64; 3],
+    evaluations: f64,
+    steps: f64,
+    recording_bytes: Option<u64>,
+    on_front: bool,
+}
+
+#[derive(Serialize)]
+struct RefusalReport<'a> {
+    method: &'static str,
+    why: &'a str,
+}
+
+impl<'a> Report<'a> {
+    fn new(scene: &'a Scene, cost: &'a Cost, advice: &Advice<'_>) -> Self {
+        let rung = |rung: &Rung| RungReport {
+            method: rung.method,
+            step: rung.step,
+            tolerance: rung.tolerance,
+            attitude_error: rung.error,
+            energy_drift: rung.energy_drift,
+            momentum_drift: rung.momentum_drift,
+            time: [rung.time.median, rung.time.least, rung.time.most],
+            evaluations: rung.evaluations,
+            steps: rung.steps,
+            recording_bytes: rung.bytes,
+            on_front: rung.on_front,
+        };
+        let refused = cost.refused.iter();
+        Self {
+            scene: &scene.name,
+            title: &scene.title,
+            duration: cost.duration,
+            instants: cost.instants,
+            reference: cost.by.clone(),
+            checked_by: cost.checked_by.clone(),
+            uncertainty: cost.uncertainty,
+            rungs: cost.rungs.iter().map(rung).collect(),
+            refused: refused
+                .map(|(method, why)| RefusalReport { method, why })
+                .collect(),
+            accuracy: advice.accuracy,
+            advice: advice.to_string(),
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! Runs kept at a few instants, to be compared.
+
+use crate::scene::{Scene, StateRate};
+use crate::sim::{Choose, Outcome, SimError, Simulation};
+use crate::trace::{Instant, Note, Sample, Sink, SinkError, Subject, Track};
+use nalgebra::{UnitQuaternion, Vector3};
+use std::ops::Range;
+
+/// What is compared of a body at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Checked {
+    pub q_wb: UnitQuaternion<f64>,
+    /// Of the centre of mass, world, m.
+    pub position_w: Vector3<f64>,
+    /// About the reference point, world, kg m²/s.
+    pub momentum_w: Vector3<f64>,
+    /// Kinetic, J.
+    pub energy: f64,
+}
+
+impl Checked {
+    pub fn of(subject: &Subject, sample: &Sample) -> Self {
+        Self {
+            q_wb: sample.motion.q_wb,
+            position_w: sample.motion.position_w,
+            momentum_w: subject.momentum_w(&sample.motion),
+            energy: subject.energy(&sample.motion),
+        }
+    }
+}
+
+/// The rotation from one attitude to another, rad: `2 atan2(|u|, |w|)` of `a⁻¹ b`, good for
+/// angles as small as rounding.
+pub fn angle(a: UnitQuaternion<f64>, b: UnitQuaternion<f64>) -> f64 {
+    let d = a.conjugate().into_inner() * b.into_inner();
+    2.0 * libm::atan2(d.imag().norm(), d.w.abs())
+}
+
+/// Keeps all bodies at some instants of the display rate.
+pub struct Checks {
+    subjects: Vec<Subject>,
+    /// Every how manieth instant.
+    every: usize,
+    seen: usize,
+    last: f64,
+    pub kept: Vec<(Instant, Vec<Checked>)>,
+}
+
+/// Instants compared at most, over a run.
+const MOST: f64 = 512.0;
+
+impl Checks {
+    fn new(scene: &Scene, subjects: &[Subject]) -> Self {
+        let instants = scene.duration * scene.record.rate.min(1.0 / scene.step);
+        Self {
+            subjects: subjects.to_vec(),
+            every: (instants / MOST).ceil().max(1.0) as usize,
+            seen: 0,
+            last: f64::NEG_INFINITY,
+            kept: Vec::new(),
+        }
+    }
+}
+
+impl Sink for Checks {
+    fn motions(&mut self, _: &Track<'_>) -> Result<(), SinkError> {
+        Ok(())
+    }
+
+    fn samples(
+        &mut self,
+        at: Instant,
+        bodies: Range<usize>,
+        samples: &[Sample],
+    ) -> Result<(), SinkError> {
+        // Rows of single bodies stand on either side of an event; those of all are on the clock.
+        if bodies.len() != self.subjects.len() || at.time == self.last {
+            return Ok(());
+        }
+        self.last = at.time;
+        if self.seen.is_multiple_of(self.every) {
+            let checked = self.subjects.iter().zip(samples);
+            let checked = checked.map(|(s, m)| Checked::of(s, m)).collect();
+            self.kept.push((at, checked));
+        }
+        self.seen += 1;
+        Ok(())
+    }
+
+    fn note(&mut self, _: Instant, _: &Note) -> Result<(), SinkError> {
+        Ok(())
+    }
+}
+
+/// A run, and its end, kept for comparison.
+pub struct Run {
+    pub outcome: Outcome,
+    pub kept: Vec<(Instant, Vec<Checked>)>,
+    pub end: Vec<Checked>,
+}
+
+pub fn run(scene: &Scene, chooser: &mut dyn Choose) -> Result<Run, SimError> {
+    let simulation = Simulation::new(scene).on_threads(1);
+    let subjects = simulation.subjects().to_vec();
+    let mut checks = Checks::new(scene, &subjects);
+    let (outcome, done) = simulation.run_by(chooser, &mut checks);
+    done?;
+    let ends = subjects.iter().zip(&outcome.end);
+    let end = ends.map(|(s, m)| Checked::of(s, m)).collect();
+    Ok(Run {
+        outcome,
+        kept: checks.kept,
+        end,
+    })
+}
+
+/// The same scene with nothing recorded but the instants to compare, `rate` a second.
+pub fn bare(scene: &Scene, step: f64, rate: f64) -> Scene {
+    let mut scene = scene.clone();
+    scene.step = step;
+    scene.record.rate = rate;
+    scene.record.state = StateRate::PerSecond(rate);
+    scene
+}
+
+impl Run {
+    /// All instants of a body at which it is compared, the end last.
+    fn of(&self, body: usize) -> impl Iterator<Item = &Checked> {
+        let kept = self.kept.iter().map(move |(_, bodies)| &bodies[body]);
+        kept.chain(std::iter::once(&self.end[body]))
+    }
+
+    fn bodies(&self) -> usize {
+        self.end.len()
+    }
+
+    /// The largest angle between the attitudes of two runs over the same instants, rad.
+    pub fn angle(&self, other: &Self) -> f64 {
+        let bodies = (0..self.bodies()).map(|k| {
+            let pairs = self.of(k).zip(other.of(k));
+            largest(pairs.map(|(a, b)| angle(a.q_wb, b.q_wb)))
+        });
+        largest(bodies)
+    }
+
+    /// The largest difference in kinetic energy, as a part of the largest energy in `truth`.
+    pub fn energy_drift(&self, truth: &Self) -> f64 {
+        self.part(
+            truth,
+            |a| a.energy.abs(),
+            |a, b| (a.energy - b.energy).abs(),
+        )
+    }
+
+    /// The largest difference in angular momentum, as a part of the largest in `truth`.
+    pub fn momentum_drift(&self, truth: &Self) -> f64 {
+        let size = |a: &Checked| a.momentum_w.norm();
+        self.part(truth, size, |a, b| (a.momentum_w - b.momentum_w).norm())
+    }
+
+    fn part(
+        &self,
+        truth: &Self,
+        size: impl Fn(&Checked) -> f64,
+        difference: impl Fn(&Checked, &Checked) -> f64,
+    ) -> f64 {
+        let bodies = (0..self.bodies()).map(|k| {
+            let of = largest(truth.of(k).map(&size));
+            let pairs = self.of(k).zip(truth.of(k));
+            let off = largest(pairs.map(|(a, b)| difference(a, b)));
+            if off == 0.0 { 0.0 } else { off / of }
+        });
+        largest(bodies)
+    }
+}
+
+/// The largest, a number that is none being the largest of all.
+fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
+    numbers.fold(
+        0.0,
+        |a: f64, b| if b.is_nan() { f64::INFINITY } else { a.max(b) },
+    )
+}

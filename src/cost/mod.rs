@@ -1,0 +1,14 @@
+//! Level 6: what accuracy costs. Runs a scene by many methods, compares each with the truest motion
+//! there is, and chooses.
+
+mod check;
+mod ladder;
+mod plan;
+#[cfg(feature = "cli")]
+pub mod plot;
+mod reference;
+
+pub use check::{Checked, angle};
+pub use ladder::{Advice, Cost, Ladder, Progress, Rung, Spread, time};
+pub use plan::{Plan, PlanError, Planned};
+pub use reference::{EXACT, Reference};

@@ -1,0 +1,373 @@
+//! `accuracy = 1e-9` in place of a method and a step: for every body and every interval between
+//! events the cheapest way that keeps to it.
+//!
+//! The closed form where the active effects allow one. Else candidates are run over the first part
+//! of the interval and compared with the truest motion there; the cheapest that keeps its share of
+//! the error is taken. What all of it comes to is measured over the whole scene, and where that is
+//! too much the shares are made smaller.
+//!
+//! Costs are counted (steps times what a step costs, [`crate::integrator::Cost`]), not timed: the
+//! same scene has the same plan on every machine.
+
+use super::check::{self, angle};
+use super::reference::{EXACT, Reference, truest};
+use crate::body::StateBlock;
+use crate::integrator::{Interval, Kind, METHODS, Method, Pieces, Step, Stepper};
+use crate::scene::{Scene, Stepping};
+use crate::sim::{Choice, Choose, Setting, SimError};
+use crate::trace::short;
+use nalgebra::UnitQuaternion;
+use std::ops::Range;
+
+/// What was chosen for some bodies between two events.
+#[derive(Clone)]
+pub struct Planned {
+    /// Indices of the bodies.
+    pub members: Range<usize>,
+    /// s.
+    pub from: f64,
+    pub until: f64,
+    /// What is active, by name.
+    pub effects: Vec<&'static str>,
+    pub choice: Choice,
+    /// Of the method's own step, s; none where it has none.
+    pub step: Option<f64>,
+    /// Of this interval, rad, where it was measured.
+    pub expected: Option<f64>,
+}
+
+/// A way through a whole scene.
+pub struct Plan {
+    pub intervals: Vec<Planned>,
+    /// Asked for, rad.
+    pub accuracy: Option<f64>,
+    /// The largest attitude error there was in a run by this plan, rad, at the instants compared.
+    pub achieved: f64,
+    /// How far the motion it was compared with can be believed, rad.
+    pub uncertainty: f64,
+    /// By which methods that motion was had, and checked.
+    pub by: Vec<&'static str>,
+    pub checked_by: Vec<&'static str>,
+}
+
+/// Why there is no plan.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    #[error(
+        "accuracy = {} rad cannot be had in this scene: 64-bit numbers give {} rad; ask for that or more",
+        short(*.asked), short(*.had)
+    )]
+    BeyondReach {
+        asked: f64,
+        /// rad, rounded up.
+        had: f64,
+    },
+    #[error(transparent)]
+    Sim(#[from] SimError),
+}
+
+/// Times the shares are made smaller before it is given up.
+const ATTEMPTS: usize = 6;
+
+impl Plan {
+    /// Plans a scene that states an accuracy; measures one that states a method.
+    pub fn of(scene: &Scene) -> Result<Self, PlanError> {
+        let reference = Reference::of(scene)?;
+        match scene.stepping {
+            Stepping::Method {
+                method, tolerance, ..
+            } => Self::by_method(scene, &reference, method, tolerance),
+            Stepping::Accuracy(asked) => Self::by_accuracy(scene, &reference, asked),
+        }
+    }
+
+    fn by_method(
+        scene: &Scene,
+        reference: &Reference,
+        method: &'static dyn Method,
+        tolerance: f64,
+    ) -> Result<Self, PlanError> {
+        let mut planner = Planner {
+            clock: scene.step,
+            duration: scene.duration,
+            way: Way::Stated(Choice {
+                method,
+                pieces: 1,
+                tolerance,
+            }),
+            log: Vec::new(),
+        };
+        let achieved = check::run(scene, &mut planner)?.angle(&reference.run);
+        Ok(Self::new(planner.log, None, achieved, reference))
+    }
+
+    fn by_accuracy(scene: &Scene, reference: &Reference, asked: f64) -> Result<Self, PlanError> {
+        let beyond = |had: f64| PlanError::BeyondReach {
+            asked,
+            had: rounded_up(had),
+        };
+        if reference.uncertainty > asked {
+            return Err(beyond(reference.uncertainty));
+        }
+        let mut best = f64::INFINITY;
+        // Half for what is measured, half for how errors grow.
+        let mut share = 0.5 * asked;
+        for _ in 0..ATTEMPTS {
+            let mut planner = Planner {
+                clock: scene.step,
+                duration: scene.duration,
+                way: Way::Cheapest { share },
+                log: Vec::new(),
+            };
+            let run = check::run(scene, &mut planner)?;
+            let achieved = run.angle(&reference.run);
+            if achieved <= asked {
+                return Ok(Self::new(planner.log, Some(asked), achieved, reference));
+            }
+            best = best.min(achieved);
+            share *= (0.5 * asked / achieved).clamp(1e-6, 0.5);
+        }
+        Err(beyond(best))
+    }
+
+    fn new(
+        intervals: Vec<Planned>,
+        accuracy: Option<f64>,
+        achieved: f64,
+        reference: &Reference,
+    ) -> Self {
+        Self {
+            intervals,
+            accuracy,
+            achieved,
+            uncertainty: reference.uncertainty,
+            by: reference.by.clone(),
+            checked_by: reference.checked_by.clone(),
+        }
+    }
+
+    /// What chooses as planned, in the same order.
+    pub fn chooser(&self) -> impl Choose {
+        Replay {
+            choices: self
+                .intervals
+                .iter()
+                .map(|planned| planned.choice)
+                .collect(),
+            next: 0,
+        }
+    }
+}
+
+/// Two digits, upwards.
+fn rounded_up(x: f64) -> f64 {
+    let unit = libm::pow(10.0, libm::floor(libm::log10(x)) - 1.0);
+    (x / unit).ceil() * unit
+}
+
+struct Replay {
+    choices: Vec<Choice>,
+    next: usize,
+}
+
+impl Choose for Replay {
+    fn choose(&mut self, setting: &Setting<'_>) -> Choice {
+        let choice = self.choices.get(self.next).copied();
+        self.next += 1;
+        // A scene asks for as many choices as it did when it was planned.
+        choice.unwrap_or_else(|| truest(setting.interval, 0))
+    }
+}
+
+enum Way {
+    Stated(Choice),
+    Cheapest {
+        /// Of the whole scene's error, rad.
+        share: f64,
+    },
+}
+
+/// Chooses, and keeps what it chose.
+struct Planner {
+    clock: f64,
+    duration: f64,
+    way: Way,
+    log: Vec<Planned>,
+}
+
+impl Choose for Planner {
+    fn choose(&mut self, setting: &Setting<'_>) -> Choice {
+        let (choice, expected) = match self.way {
+            Way::Stated(choice) => (choice, None),
+            Way::Cheapest { share } => self.cheapest(setting, share),
+        };
+        let step = match choice.method.info().kind {
+            Kind::Fixed => Some(self.clock / f64::from(choice.pieces)),
+            Kind::Adaptive | Kind::Closed => None,
+        };
+        self.log.push(Planned {
+            members: setting.members.clone(),
+            from: setting.from,
+            until: setting.interval.until,
+            effects: setting.interval.load.names(),
+            choice,
+            step,
+            expected,
+        });
+        choice
+    }
+}
+
+/// Clock steps over which candidates are compared.
+const WINDOW: usize = 48;
+/// Pieces of a clock step at most.
+const MOST_PIECES: u32 = 1 << 14;
+/// Tolerances that are tried, each a tenth of the last.
+const LOOSEST: f64 = 1e-5;
+const TIGHTEST: f64 = 1e-16;
+
+impl Planner {
+    /// The cheapest choice whose error over the window is its part of `share`.
+    fn cheapest(&self, setting: &Setting<'_>, share: f64) -> (Choice, Option<f64>) {
+        let interval = setting.interval;
+        let best = truest(interval, 0);
+        if best.method.info().kind == Kind::Closed {
+            return (best, Some(EXACT));
+        }
+        let trial = Trial::new(setting, self.clock);
+        let allowed = share * trial.length() / self.duration;
+        let truth = trial.states(best);
+        let mut winner: Option<(f64, Choice, f64)> = None;
+        for method in METHODS {
+            let info = method.info();
+            if info.order < 2 || info.refuses(interval).is_some() {
+                continue;
+            }
+            let cheaper = |cost: f64| winner.is_none_or(|(least, ..)| cost < least);
+            if let Some(found) = trial.first_within(*method, allowed, &truth, &cheaper) {
+                winner = Some(found);
+            }
+        }
+        match winner {
+            Some((_, choice, error)) => {
+                let whole = (interval.until - setting.from) / trial.length();
+                (choice, Some(error * whole.max(1.0)))
+            }
+            None => (best, None),
+        }
+    }
+}
+
+/// The first steps of an interval, to try methods on.
+struct Trial<'a> {
+    setting: &'a Setting<'a>,
+    steps: Vec<Step>,
+}
+
+impl<'a> Trial<'a> {
+    fn new(setting: &'a Setting<'a>, clock: f64) -> Self {
+        let (from, until) = (setting.from, setting.interval.until);
+        let whole = ((until - from) / clock).ceil().max(1.0);
+        let count = whole.min(WINDOW as f64) as usize;
+        // An interval shorter than the window is tried whole, in even steps.
+        let h = if whole <= WINDOW as f64 {
+            (until - from) / count as f64
+        } else {
+            clock
+        };
+        let step = |k: usize| Step {
+            from: from + h * k as f64,
+            h,
+            to: from + h * (k + 1) as f64,
+            keep: true,
+        };
+        Self {
+            setting,
+            steps: (0..count).map(step).collect(),
+        }
+    }
+
+    fn length(&self) -> f64 {
+        self.steps.iter().map(|step| step.h).sum()
+    }
+
+    fn states(&self, choice: Choice) -> Vec<StateBlock> {
+        self.run(choice).0
+    }
+
+    /// The states at the ends of the steps, and how many steps the method itself took.
+    fn run(&self, choice: Choice) -> (Vec<StateBlock>, u64) {
+        let interval = Interval {
+            tolerance: choice.tolerance,
+            ..self.setting.interval.clone()
+        };
+        let (t, state) = (self.setting.from, self.setting.state);
+        let stepper = choice.method.start(interval, t, state);
+        let mut stepper: Box<dyn Stepper> = match choice.pieces {
+            1 => stepper,
+            pieces => Box::new(Pieces::new(stepper, pieces)),
+        };
+        let mut kept = Vec::with_capacity(self.steps.len());
+        stepper.advance(&self.steps, &mut kept);
+        (kept, stepper.work().steps)
+    }
+
+    /// The coarsest way by this method that keeps the error, as long as it is `cheaper`: its cost,
+    /// the way, its error.
+    fn first_within(
+        &self,
+        method: &'static dyn Method,
+        allowed: f64,
+        truth: &[StateBlock],
+        cheaper: &impl Fn(f64) -> bool,
+    ) -> Option<(f64, Choice, f64)> {
+        let weight = method.info().cost.weight;
+        let mut choice = Choice {
+            method,
+            pieces: 1,
+            tolerance: LOOSEST,
+        };
+        let adaptive = method.info().kind == Kind::Adaptive;
+        loop {
+            let count = self.steps.len() as f64 * f64::from(choice.pieces);
+            if !adaptive && !cheaper(count * weight) {
+                return None;
+            }
+            let (states, steps) = self.run(choice);
+            let cost = steps as f64 * weight;
+            let error = self.error(&states, truth);
+            if error <= allowed {
+                return cheaper(cost).then_some((cost, choice, error));
+            }
+            if adaptive {
+                choice.tolerance *= 0.1;
+                if choice.tolerance < TIGHTEST {
+                    return None;
+                }
+            } else {
+                choice.pieces *= 2;
+                if choice.pieces > MOST_PIECES {
+                    return None;
+                }
+            }
+        }
+    }
+
+    /// The largest attitude error, rad; infinite where a state is lost.
+    fn error(&self, states: &[StateBlock], truth: &[StateBlock]) -> f64 {
+        let mut worst = 0.0_f64;
+        for (a, b) in states.iter().zip(truth) {
+            for lane in 0..self.setting.members.len() {
+                let attitude =
+                    |block: &StateBlock| UnitQuaternion::new_unchecked(block.get(lane).q_wp);
+                let off = angle(attitude(a), attitude(b));
+                worst = if off.is_nan() {
+                    f64::INFINITY
+                } else {
+                    worst.max(off)
+                };
+            }
+        }
+        worst
+    }
+}

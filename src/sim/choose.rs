@@ -1,0 +1,57 @@
+//! Who decides by which method bodies get through an interval.
+
+use crate::body::StateBlock;
+use crate::integrator::{Interval, Method};
+use crate::scene::{Scene, Stepping};
+use std::ops::Range;
+
+/// A way through an interval.
+#[derive(Clone, Copy)]
+pub struct Choice {
+    pub method: &'static dyn Method,
+    /// Into how many equal pieces it takes a step of the clock.
+    pub pieces: u32,
+    /// For a method with steps of its own.
+    pub tolerance: f64,
+}
+
+/// Where an interval lies, and with whom it begins.
+#[derive(Clone, Debug)]
+pub struct Setting<'a> {
+    /// Indices of the bodies in the scene.
+    pub members: Range<usize>,
+    pub interval: &'a Interval,
+    /// When it begins, s.
+    pub from: f64,
+    /// The bodies as it begins.
+    pub state: &'a StateBlock,
+}
+
+/// Is asked at the start and whenever an event has touched some bodies.
+pub trait Choose {
+    fn choose(&mut self, setting: &Setting<'_>) -> Choice;
+}
+
+/// The method that a scene states, throughout.
+#[derive(Clone, Copy)]
+pub struct Stated(pub Choice);
+
+impl Stated {
+    /// `None` where the scene states an accuracy instead.
+    pub fn of(scene: &Scene) -> Option<Self> {
+        match scene.stepping {
+            Stepping::Method { method, tolerance } => Some(Self(Choice {
+                method,
+                pieces: 1,
+                tolerance,
+            })),
+            Stepping::Accuracy(_) => None,
+        }
+    }
+}
+
+impl Choose for Stated {
+    fn choose(&mut self, _: &Setting<'_>) -> Choice {
+        self.0
+    }
+}
