@@ -1,5 +1,6 @@
 //! Runs kept at a few instants, to be compared.
 
+use crate::math::angle_between;
 use crate::scene::{Scene, StateRate};
 use crate::sim::{Choose, Outcome, SimError, Simulation};
 use crate::trace::{Instant, Note, Sample, Sink, SinkError, Subject, Track};
@@ -27,13 +28,6 @@ impl Checked {
             energy: subject.energy(&sample.motion),
         }
     }
-}
-
-/// The rotation from one attitude to another, rad: `2 atan2(|u|, |w|)` of `a⁻¹ b`, good for
-/// angles as small as rounding.
-pub fn angle(a: UnitQuaternion<f64>, b: UnitQuaternion<f64>) -> f64 {
-    let d = a.conjugate().into_inner() * b.into_inner();
-    2.0 * libm::atan2(d.imag().norm(), d.w.abs())
 }
 
 /// Keeps all bodies at some instants of the display rate.
@@ -138,7 +132,7 @@ impl Run {
     pub fn angle(&self, other: &Self) -> f64 {
         let bodies = (0..self.bodies()).map(|k| {
             let pairs = self.of(k).zip(other.of(k));
-            largest(pairs.map(|(a, b)| angle(a.q_wb, b.q_wb)))
+            largest(pairs.map(|(a, b)| angle_between(a.q_wb, b.q_wb)))
         });
         largest(bodies)
     }

@@ -8,7 +8,7 @@ mod plan;
 pub mod plot;
 mod reference;
 
-pub use check::{Checked, angle};
+pub use check::Checked;
 pub use ladder::{Advice, Cost, Ladder, Progress, Rung, Spread, time};
 pub use plan::{Plan, PlanError, Planned};
 pub use reference::{EXACT, Reference};

@@ -9,10 +9,11 @@
 //! Costs are counted (steps times what a step costs, [`crate::integrator::Cost`]), not timed: the
 //! same scene has the same plan on every machine.
 
-use super::check::{self, angle};
+use super::check;
 use super::reference::{EXACT, Reference, truest};
 use crate::body::StateBlock;
 use crate::integrator::{Interval, Kind, METHODS, Method, Pieces, Step, Stepper};
+use crate::math::angle_between;
 use crate::scene::{Scene, Stepping};
 use crate::sim::{Choice, Choose, Setting, SimError};
 use crate::trace::short;
@@ -360,7 +361,7 @@ impl<'a> Trial<'a> {
             for lane in 0..self.setting.members.len() {
                 let attitude =
                     |block: &StateBlock| UnitQuaternion::new_unchecked(block.get(lane).q_wp);
-                let off = angle(attitude(a), attitude(b));
+                let off = angle_between(attitude(a), attitude(b));
                 worst = if off.is_nan() {
                     f64::INFINITY
                 } else {

@@ -248,6 +248,10 @@ const B: f64 = 1.7;
 const C: f64 = 0.6;
 
 impl crate::effect::Effect for Driven {
+    fn name(&self) -> &'static str {
+        "driven"
+    }
+
     fn add(
         &self,
         t: f64,
@@ -443,6 +447,10 @@ fn a_block_gives_every_body_the_bits_it_would_have_alone() {
 struct Spring(f64);
 
 impl crate::effect::Effect for Spring {
+    fn name(&self) -> &'static str {
+        "spring"
+    }
+
     fn add(
         &self,
         _: f64,

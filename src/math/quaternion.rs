@@ -25,6 +25,13 @@ pub fn exponential(v: Vector3<f64>) -> Quaternion<f64> {
     Quaternion::from_parts(cos, v * factor)
 }
 
+/// The angle of the rotation from one attitude to another, rad: `2 atan2(|u|, |w|)` of `a⁻¹ b`,
+/// good for angles as small as rounding.
+pub fn angle_between(a: UnitQuaternion<f64>, b: UnitQuaternion<f64>) -> f64 {
+    let d = a.conjugate().into_inner() * b.into_inner();
+    2.0 * libm::atan2(d.imag().norm(), d.w.abs())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

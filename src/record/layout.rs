@@ -39,6 +39,8 @@ const SEEN_FOR: f64 = 0.5;
 /// A plot of one stream.
 struct Plot {
     stream: &'static str,
+    /// The tab it stands in.
+    about: About,
     title: &'static str,
     symbol: &'static str,
     /// Three components, where it is a vector.
@@ -46,9 +48,19 @@ struct Plot {
     single: &'static str,
 }
 
-const PLOTS: [Plot; 5] = [
+/// What a plot is about.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum About {
+    Motion,
+    Accuracy,
+}
+
+const TABS: [(About, &str); 2] = [(About::Motion, "motion"), (About::Accuracy, "accuracy")];
+
+const PLOTS: [Plot; 9] = [
     Plot {
         stream: "torque",
+        about: About::Motion,
         title: "torque τ (N·m)",
         symbol: "τ",
         components: Some("torque"),
@@ -56,6 +68,7 @@ const PLOTS: [Plot; 5] = [
     },
     Plot {
         stream: "alpha",
+        about: About::Motion,
         title: "angular acceleration α (rad/s²)",
         symbol: "α",
         components: Some("angular_acceleration"),
@@ -63,6 +76,7 @@ const PLOTS: [Plot; 5] = [
     },
     Plot {
         stream: "omega",
+        about: About::Motion,
         title: "angular velocity ω (rad/s)",
         symbol: "ω",
         components: Some("angular_velocity"),
@@ -70,6 +84,7 @@ const PLOTS: [Plot; 5] = [
     },
     Plot {
         stream: "state",
+        about: About::Motion,
         title: "velocity v (m/s)",
         symbol: "v",
         components: Some("velocity"),
@@ -77,10 +92,43 @@ const PLOTS: [Plot; 5] = [
     },
     Plot {
         stream: "energy",
+        about: About::Motion,
         title: "kinetic energy E (J)",
         symbol: "E",
         components: None,
         single: "kinetic_energy",
+    },
+    Plot {
+        stream: "error",
+        about: About::Accuracy,
+        title: "angle from the exact attitude (rad)",
+        symbol: "δ",
+        components: None,
+        single: "attitude_error",
+    },
+    Plot {
+        stream: "drift",
+        about: About::Accuracy,
+        title: "energy drift (part of E)",
+        symbol: "ΔE/E",
+        components: None,
+        single: "energy_drift",
+    },
+    Plot {
+        stream: "drift",
+        about: About::Accuracy,
+        title: "angular momentum drift (part of |L|)",
+        symbol: "|ΔL|/|L|",
+        components: None,
+        single: "angular_momentum_drift",
+    },
+    Plot {
+        stream: "step_time",
+        about: About::Accuracy,
+        title: "wall time of a step (s)",
+        symbol: "t",
+        components: None,
+        single: "step_time",
     },
 ];
 
@@ -195,9 +243,8 @@ fn overview(blueprint: &mut Blueprint<'_>, setting: &Setting<'_>) -> Result<Part
     )?);
     shares.push(2.4);
     let plots = magnitude_plots(blueprint, setting)?;
-    if !plots.is_empty() {
-        let rows = vec![1.0; plots.len()];
-        columns.push(blueprint.container(ContainerKind::Vertical, "plots", &plots, &rows)?);
+    if let Some(plots) = tabbed(blueprint, plots)? {
+        columns.push(plots);
         shares.push(2.4);
     }
     blueprint.container(ContainerKind::Horizontal, "all bodies", &columns, &shares)
@@ -224,17 +271,11 @@ fn body_tab(
     }
     let mut plots = Vec::new();
     for plot in shown(setting) {
-        plots.push(component_plot(
-            blueprint,
-            setting.heading,
-            plot,
-            index,
-            subject,
-        )?);
+        let drawn = component_plot(blueprint, setting.heading, plot, index, subject)?;
+        plots.push((plot.about, drawn));
     }
-    if !plots.is_empty() {
-        let rows = vec![1.0; plots.len()];
-        columns.push(blueprint.container(ContainerKind::Vertical, "plots", &plots, &rows)?);
+    if let Some(plots) = tabbed(blueprint, plots)? {
+        columns.push(plots);
         shares.push(2.4);
     }
     blueprint.container(ContainerKind::Horizontal, &subject.label, &columns, &shares)
@@ -317,11 +358,40 @@ fn shown<'s>(setting: &'s Setting<'_>) -> impl Iterator<Item = &'static Plot> + 
         .filter(|plot| setting.heading.streams.contains(plot.stream))
 }
 
+/// Plots one below the other, in a tab for each thing that they are about.
+fn tabbed(
+    blueprint: &mut Blueprint<'_>,
+    plots: Vec<(About, Part)>,
+) -> Result<Option<Part>, RecordError> {
+    let mut tabs = Vec::new();
+    let mut plots = plots.into_iter().peekable();
+    for (about, name) in TABS {
+        let mut column = Vec::new();
+        while let Some((_, plot)) = plots.next_if(|(of, _)| *of == about) {
+            column.push(plot);
+        }
+        if !column.is_empty() {
+            let rows = vec![1.0; column.len()];
+            tabs.push(blueprint.container(ContainerKind::Vertical, name, &column, &rows)?);
+        }
+    }
+    match tabs.len() {
+        0 => Ok(None),
+        1 => Ok(tabs.pop()),
+        _ => Ok(Some(blueprint.container(
+            ContainerKind::Tabs,
+            "plots",
+            &tabs,
+            &[],
+        )?)),
+    }
+}
+
 /// One plot a quantity, one line a body.
 fn magnitude_plots(
     blueprint: &mut Blueprint<'_>,
     setting: &Setting<'_>,
-) -> Result<Vec<Part>, RecordError> {
+) -> Result<Vec<(About, Part)>, RecordError> {
     let mut plots = Vec::new();
     for plot in shown(setting) {
         let lines = setting.subjects.iter().enumerate().take(MOST_TABS);
@@ -340,7 +410,8 @@ fn magnitude_plots(
             Some(_) => format!("|{}|, {}", plot.symbol, plot.title),
             None => plot.title.to_owned(),
         };
-        plots.push(time_series(blueprint, &title, visualizers.collect())?);
+        let drawn = time_series(blueprint, &title, visualizers.collect())?;
+        plots.push((plot.about, drawn));
     }
     Ok(plots)
 }

@@ -46,6 +46,13 @@ pub fn page(
         (quantity.write)(subject, sample, &mut values);
         match quantity.shape {
             Shape::Matrix => matrix(&mut text, quantity, &values),
+            Shape::ScalarWhereKnown => {
+                if let Some(&value) = values.first() {
+                    let (symbol, unit) = (quantity.symbol, quantity.unit);
+                    let unit = if unit == "1" { "" } else { unit };
+                    let _ = writeln!(text, "\n{symbol} = {value:.1e} {unit}");
+                }
+            }
             Shape::Scalar if !quantity.name.ends_with("_norm") => {
                 let _ = writeln!(
                     text,

@@ -3,11 +3,11 @@
 use super::Jump;
 use super::choose::{Choose, Setting};
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
-use crate::effect::{Load, Push, WrenchBlock};
-use crate::integrator::{Interval, Pieces, Step, Stepper, Work};
+use crate::effect::{Frame, Load, Push, Term, WrenchBlock};
+use crate::integrator::{Interval, Method, Pieces, Refusal, Step, Stepper, Work};
 use crate::mass::tensor;
 use crate::scene::{Body, Event, Framed, Scene, lasting};
-use crate::trace::{Motion, PointForce, Sample, Subject};
+use crate::trace::{Deviation, Motion, PointForce, Sample, Subject};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
 
@@ -31,6 +31,15 @@ pub struct Group {
     pub method: &'static str,
     /// What the steppers before this one did.
     done: Work,
+}
+
+/// A force that is constant in the world, at a point of a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Weight {
+    /// N.
+    pub force_w: Vector3<f64>,
+    /// From the reference point, body axes, m.
+    pub point_b: Vector3<f64>,
 }
 
 /// What about a body does not change, for the trace.
@@ -104,13 +113,7 @@ impl Group {
     /// Sets out from here, at time `t`, by the way that is chosen for the time `until` the next
     /// event.
     pub fn set_out(&mut self, chooser: &mut dyn Choose, t: f64, until: f64) {
-        let mut interval = Interval {
-            load: self.load.clone(),
-            inertial: self.inertial,
-            bodies: self.members.len(),
-            until,
-            tolerance: 0.0,
-        };
+        let mut interval = self.interval(until);
         let choice = chooser.choose(&Setting {
             members: self.members.clone(),
             interval: &interval,
@@ -125,6 +128,45 @@ impl Group {
             1 => stepper,
             pieces => Box::new(Pieces::new(stepper, pieces)),
         });
+    }
+
+    /// Why a method does not take what acts now.
+    pub fn refusal(&self, method: &dyn Method, until: f64) -> Option<Refusal> {
+        method.info().refuses(&self.interval(until))
+    }
+
+    fn interval(&self, until: f64) -> Interval {
+        Interval {
+            load: self.load.clone(),
+            inertial: self.inertial,
+            bodies: self.members.len(),
+            until,
+            tolerance: 0.0,
+        }
+    }
+
+    /// The forces on a body, where its model keeps their energy: Euler's equations without damping,
+    /// and nothing but forces that are constant in the world at points of the body.
+    pub fn weights(&self, body: usize) -> Option<Vec<Weight>> {
+        let lane = body - self.members.start;
+        if self.load.decay().is_some() || !self.load.gyroscopic() {
+            return None;
+        }
+        let terms = self.load.terms(&self.inertial)?;
+        let q_bp = self.q_pb[lane].inverse();
+        let weight = |term: Term| match term {
+            Term::Force {
+                force: Frame::World(force_w),
+                point: Frame::Principal(point_p),
+                ..
+            } => Some(Weight {
+                force_w,
+                point_b: q_bp * point_p,
+            }),
+            _ => None,
+        };
+        let own = terms.into_iter().filter(|term| term.lane() == lane);
+        own.map(weight).collect()
     }
 
     /// Takes a stretch of steps. Where a body's state is lost it stops after that step: how many
@@ -146,7 +188,8 @@ impl Group {
         None
     }
 
-    fn take(&mut self, steps: &[Step]) {
+    /// Takes steps, whatever comes of it.
+    pub fn take(&mut self, steps: &[Step]) {
         let Some(stepper) = &mut self.stepper else {
             return;
         };
@@ -320,6 +363,8 @@ impl Group {
             tau_w,
             alpha_w,
             pushes: pushes.map(|push| acting(push, &state)).collect(),
+            deviation: Deviation::default(),
+            step_time: None,
         }
     }
 

@@ -5,13 +5,14 @@ mod group;
 mod schedule;
 mod script;
 mod sizes;
+mod truth;
 
 pub use choose::{Choice, Choose, Setting, Stated};
 pub use sizes::Sizes;
 
 use crate::body::LANES;
 use crate::integrator::{Step, Work};
-use crate::scene::{Action, Scene, Stepping};
+use crate::scene::{Action, Event, Scene, Stepping};
 use crate::trace::{
     Instant, Motion, Note, NoteKind, PointForce, Sample, Sink, SinkError, Subject, Track, short,
 };
@@ -19,6 +20,8 @@ use group::Group;
 use nalgebra::Vector3;
 use schedule::{Schedule, Stretch};
 use script::Happening;
+use std::cell::RefCell;
+use truth::Truth;
 
 /// A scene being stepped.
 pub struct Simulation<'s> {
@@ -30,6 +33,12 @@ pub struct Simulation<'s> {
     /// Indices of the events that act now.
     active: Vec<usize>,
     threads: usize,
+    /// By body; none where no stream compares with the truth.
+    truths: Vec<RefCell<Truth>>,
+    /// Whether steps are timed.
+    timed: bool,
+    /// Mean wall time of the last stretch's steps of a group, s.
+    step_time: Option<f64>,
 }
 
 /// Steps of a block from which on a thread is worth its start (some 40 µs): about ten times that.
@@ -106,6 +115,9 @@ impl<'s> Simulation<'s> {
             width,
             active: Vec::new(),
             threads: std::thread::available_parallelism().map_or(1, usize::from),
+            truths: truths(scene),
+            timed: scene.record.streams.contains("step_time"),
+            step_time: None,
         };
         for group in &mut simulation.groups {
             group.load(scene, &[]);
@@ -184,10 +196,12 @@ impl<'s> Simulation<'s> {
         let start = schedule.now();
         self.happen(start, &script::at_start(self.scene), outcome, sink)?;
         self.deliver_motions(start, sink)?;
-        sink.samples(start, 0..self.subjects.len(), &self.samples(start.time))?;
         let all: Vec<usize> = (0..self.subjects.len()).collect();
         self.must_be_finite(start, &all, sink)?;
         self.set_out(&all, schedule, chooser);
+        let mut samples = self.samples(start.time);
+        self.judge(0, &mut samples, start.time);
+        sink.samples(start, 0..samples.len(), &samples)?;
         loop {
             let first = schedule.now();
             let Some(stretch) = schedule.next_stretch() else {
@@ -215,7 +229,8 @@ impl<'s> Simulation<'s> {
         }
     }
 
-    /// Starts the method of the groups of these bodies: from now until an event touches them.
+    /// Starts the method of the groups of these bodies, and what is known of their true motion:
+    /// from now until an event touches them.
     fn set_out(&mut self, bodies: &[usize], schedule: &Schedule<'_>, chooser: &mut dyn Choose) {
         let mut groups: Vec<usize> = bodies.iter().map(|body| body / self.width).collect();
         groups.dedup();
@@ -227,6 +242,19 @@ impl<'s> Simulation<'s> {
             let until = schedule.until(touches);
             self.groups[group].set_out(chooser, now, until);
         }
+        for &body in bodies {
+            let Some(truth) = self.truths.get(body) else {
+                continue;
+            };
+            let group = self.group_of(body);
+            let sample = group.sample(body, now);
+            let simulated = (&self.subjects[body], &sample, group, body);
+            let touches = |happening: Happening| self.scene.events[happening.event()].body == body;
+            let until = schedule.until(touches);
+            truth
+                .borrow_mut()
+                .set_out((self.scene, &self.active), (now, until), simulated);
+        }
     }
 
     /// Takes every group through a stretch without events, one group after another. Where a state
@@ -237,7 +265,12 @@ impl<'s> Simulation<'s> {
         first: Instant,
         sink: &mut dyn Sink,
     ) -> Result<Option<(Instant, usize)>, SimError> {
+        let start = self.timed.then(std::time::Instant::now);
         let lost = self.advance(&stretch.steps);
+        self.step_time = start.map(|start| {
+            let steps = stretch.steps.len() * self.groups.len();
+            start.elapsed().as_secs_f64() / steps.max(1) as f64
+        });
         let Some((taken, body)) = lost else {
             self.deliver_stretch(stretch, sink)?;
             return Ok(None);
@@ -290,9 +323,10 @@ impl<'s> Simulation<'s> {
         for (k, kept) in stretch.kept.iter().enumerate() {
             if kept.display {
                 let groups = self.groups.iter();
-                let samples: Vec<Sample> = groups
+                let mut samples: Vec<Sample> = groups
                     .flat_map(|group| group.samples_kept(k, kept.at.time))
                     .collect();
+                self.judge(0, &mut samples, kept.at.time);
                 sink.samples(kept.at, 0..self.subjects.len(), &samples)?;
             }
         }
@@ -371,6 +405,9 @@ impl<'s> Simulation<'s> {
                 Happening::Begins(k) => {
                     let body = self.scene.events[k].body;
                     *jump = begin(&mut self.groups[body / self.width], self.scene, k);
+                    if let (Some(_), Some(truth)) = (&jump, self.truths.get_mut(body)) {
+                        strike(truth.get_mut(), &self.scene.events[k], now.time);
+                    }
                     if jump.is_none() {
                         self.active.push(k);
                     }
@@ -423,10 +460,23 @@ impl<'s> Simulation<'s> {
         sink: &mut dyn Sink,
     ) -> Result<(), SinkError> {
         for &body in bodies {
-            let sample = self.group_of(body).sample(body, now.time);
-            sink.samples(now, body..body + 1, &[sample])?;
+            let mut sample = [self.group_of(body).sample(body, now.time)];
+            self.judge(body, &mut sample, now.time);
+            sink.samples(now, body..body + 1, &sample)?;
         }
         Ok(())
+    }
+
+    /// Adds to the samples of bodies from `first` on how far they are from the truth, where it is
+    /// known, and what a step took.
+    fn judge(&self, first: usize, samples: &mut [Sample], t: f64) {
+        for (body, sample) in (first..).zip(samples) {
+            sample.step_time = self.step_time;
+            if let Some(truth) = self.truths.get(body) {
+                let subject = &self.subjects[body];
+                sample.deviation = truth.borrow_mut().deviation(subject, sample, t);
+            }
+        }
     }
 
     fn group_of(&self, body: usize) -> &Group {
@@ -451,6 +501,31 @@ impl<'s> Simulation<'s> {
             })?;
         }
         Ok(())
+    }
+}
+
+/// The true motion of every body, where a stream compares with it.
+fn truths(scene: &Scene) -> Vec<RefCell<Truth>> {
+    let compared = ["error", "drift"];
+    if !compared
+        .iter()
+        .any(|name| scene.record.streams.contains(name))
+    {
+        return Vec::new();
+    }
+    let alone = group::groups(&scene.bodies, 1);
+    alone
+        .into_iter()
+        .map(|body| RefCell::new(Truth::new(body)))
+        .collect()
+}
+
+/// Strikes the truth as [`begin`] strikes the simulated body.
+fn strike(truth: &mut Truth, event: &Event, at: f64) {
+    match event.action {
+        Action::Push { .. } | Action::Torque { .. } => {}
+        Action::Impulse { impulse, point } => truth.strike(event.body, impulse, Some(point), at),
+        Action::AngularImpulse { impulse } => truth.strike(event.body, impulse, None, at),
     }
 }
 

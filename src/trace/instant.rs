@@ -92,6 +92,17 @@ pub struct PointForce {
     pub point_w: Vector3<f64>,
 }
 
+/// How far a body is from what is known of its model's true motion; `None` where it is not known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Deviation {
+    /// The angle from the exact attitude, rad.
+    pub attitude: Option<f64>,
+    /// The error of the energy, as a part of the largest kinetic energy so far.
+    pub energy: Option<f64>,
+    /// The length of the error of the angular momentum, as a part of the largest so far.
+    pub momentum: Option<f64>,
+}
+
 /// A body at an instant: its state and what the model says follows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
@@ -103,6 +114,9 @@ pub struct Sample {
     pub alpha_w: Vector3<f64>,
     /// The pushes that act.
     pub pushes: Vec<PointForce>,
+    pub deviation: Deviation,
+    /// Wall time a step took of late, s, where it is measured.
+    pub step_time: Option<f64>,
 }
 
 impl Sample {

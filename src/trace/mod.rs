@@ -7,7 +7,7 @@ mod instant;
 mod quantity;
 mod streams;
 
-pub use instant::{Instant, Motion, PointForce, Sample, Subject};
+pub use instant::{Deviation, Instant, Motion, PointForce, Sample, Subject};
 pub use quantity::{Quantity, Shape};
 pub use streams::{STREAMS, Stream, StreamSet};
 

@@ -16,6 +16,8 @@ pub enum Shape {
     Matrix,
     /// x, y, z of each push that acts; none where there is none.
     VectorPerPush,
+    /// A scalar, none where it is not known.
+    ScalarWhereKnown,
 }
 
 impl Shape {
@@ -27,6 +29,7 @@ impl Shape {
             Self::Quaternion => "x y z w",
             Self::Matrix => "3×3, by rows",
             Self::VectorPerPush => "x y z a push",
+            Self::ScalarWhereKnown => "1 where known",
         }
     }
 }
@@ -199,6 +202,43 @@ quantity!(
     "–",
     Scalar,
     |s, m, out| { out.push(s.energy(&m.motion)) }
+);
+
+quantity!(
+    ATTITUDE_ERROR,
+    "attitude_error",
+    "δ",
+    "rad",
+    "–",
+    ScalarWhereKnown,
+    |_, m, out| out.extend(m.deviation.attitude)
+);
+quantity!(
+    ENERGY_DRIFT,
+    "energy_drift",
+    "ΔE/E",
+    "1",
+    "–",
+    ScalarWhereKnown,
+    |_, m, out| out.extend(m.deviation.energy)
+);
+quantity!(
+    MOMENTUM_DRIFT,
+    "angular_momentum_drift",
+    "|ΔL|/|L|",
+    "1",
+    "–",
+    ScalarWhereKnown,
+    |_, m, out| out.extend(m.deviation.momentum)
+);
+quantity!(
+    STEP_TIME,
+    "step_time",
+    "t_step",
+    "s",
+    "–",
+    ScalarWhereKnown,
+    |_, m, out| out.extend(m.step_time)
 );
 
 /// `R I_b Rᵀ`.

@@ -8,9 +8,11 @@ pub struct Stream {
     pub quantities: &'static [&'static Quantity],
     /// What it shows.
     pub about: &'static str,
+    /// Whether it is recorded where a scene chooses none.
+    pub by_default: bool,
 }
 
-/// Every stream, in the order of the lists. All are recorded where a scene chooses none.
+/// Every stream, in the order of the lists.
 pub const STREAMS: &[Stream] = &[
     Stream {
         name: "state",
@@ -21,51 +23,79 @@ pub const STREAMS: &[Stream] = &[
             &q::VELOCITY_NORM,
         ],
         about: "the pose as numbers; the picture's pose is recorded always",
+        by_default: true,
     },
     Stream {
         name: "force",
         quantities: &[&q::FORCE, &q::FORCE_POINT],
         about: "pushes: an arrow that ends where it pushes, and its lever arm",
+        by_default: true,
     },
     Stream {
         name: "torque",
         quantities: &[&q::TORQUE, &q::TORQUE_NORM],
         about: "applied torque about the centre of mass or the pivot: an axis with a turning arrow",
+        by_default: true,
     },
     Stream {
         name: "alpha",
         quantities: &[&q::ALPHA, &q::ALPHA_NORM],
         about: "angular acceleration by the model, gyroscopic term included where the scene has it",
+        by_default: true,
     },
     Stream {
         name: "omega",
         quantities: &[&q::OMEGA, &q::OMEGA_NORM],
         about: "angular velocity",
+        by_default: true,
     },
     Stream {
         name: "momentum",
         quantities: &[&q::MOMENTUM],
         about: "angular momentum about the centre of mass or the pivot",
+        by_default: true,
     },
     Stream {
         name: "inertia",
         quantities: &[&q::INERTIA],
         about: "world inertia about the centre of mass or the pivot; the picture is the equivalent ellipsoid",
+        by_default: true,
     },
     Stream {
         name: "inverse_inertia",
         quantities: &[&q::INVERSE_INERTIA],
         about: "world inverse inertia, zero about held axes",
+        by_default: true,
     },
     Stream {
         name: "energy",
         quantities: &[&q::ENERGY],
         about: "kinetic energy",
+        by_default: true,
+    },
+    Stream {
+        name: "error",
+        quantities: &[&q::ATTITUDE_ERROR],
+        about: "angle from the exact attitude, as long as nothing has acted but impulses, damping and forces without a torque",
+        by_default: true,
+    },
+    Stream {
+        name: "drift",
+        quantities: &[&q::ENERGY_DRIFT, &q::MOMENTUM_DRIFT],
+        about: "what the method adds to energy and angular momentum, where the true values are known: beside the exact motion, or since the last event where the model keeps them",
+        by_default: true,
+    },
+    Stream {
+        name: "step_time",
+        quantities: &[&q::STEP_TIME],
+        about: "wall time a step takes; only where asked for by name, because no two runs have the same",
+        by_default: false,
     },
     Stream {
         name: "numbers",
         quantities: &[],
         about: "a page a body, at the cursor: every number above that is recorded, to read",
+        by_default: true,
     },
 ];
 
@@ -80,7 +110,9 @@ impl StreamSet {
 
     /// What is recorded where a scene chooses nothing.
     pub fn default_set() -> Self {
-        Self((1 << STREAMS.len()) - 1)
+        let streams = STREAMS.iter().enumerate();
+        let chosen = streams.filter(|(_, stream)| stream.by_default);
+        Self(chosen.fold(0, |set, (k, _)| set | 1 << k))
     }
 
     /// The set of the one stream of that name.

@@ -1,0 +1,189 @@
+//! What is known of the true motion beside the simulated one.
+//!
+//! As long as nothing turns a body but impulses, its exact motion is known: it goes along in closed
+//! form, is struck by the same impulses, and is compared at every instant that is looked at. Where
+//! a torque acts the model may still keep something: the energy of constant forces at points of the
+//! body, and of the angular momentum what lies along them.
+
+use super::choose::{Choice, Choose, Setting};
+use super::group::{Group, Weight};
+use crate::integrator::{Kind, METHODS, Method, Step};
+use crate::math::angle_between;
+use crate::scene::{Framed, Scene};
+use crate::trace::{Deviation, Sample, Subject};
+use nalgebra::{Unit, Vector3};
+
+/// The truth about one body.
+pub struct Truth {
+    known: Known,
+    /// The largest kinetic energy (J) and angular momentum (kg m²/s) so far: what errors are parts of.
+    energy: f64,
+    momentum: f64,
+}
+
+enum Known {
+    /// The body in closed form, and when it is there (s).
+    Exact {
+        body: Box<Group>,
+        now: f64,
+    },
+    /// What the model keeps since the last event.
+    Kept(Kept),
+    Nothing,
+}
+
+struct Kept {
+    weights: Vec<Weight>,
+    /// Kinetic and potential, J.
+    energy: f64,
+    momentum_w: Vector3<f64>,
+    /// The direction along which angular momentum is kept; `None` is every direction.
+    along: Option<Unit<Vector3<f64>>>,
+}
+
+/// A body as it is simulated, its group and its index.
+pub type Simulated<'a> = (&'a Subject, &'a Sample, &'a Group, usize);
+
+/// The first method in closed form.
+fn closed_form() -> Option<&'static dyn Method> {
+    let closed = |method: &&dyn Method| method.info().kind == Kind::Closed;
+    METHODS.iter().copied().find(closed)
+}
+
+struct Exactly(&'static dyn Method);
+
+impl Choose for Exactly {
+    fn choose(&mut self, _: &Setting<'_>) -> Choice {
+        Choice {
+            method: self.0,
+            pieces: 1,
+            tolerance: f64::EPSILON,
+        }
+    }
+}
+
+impl Truth {
+    /// Of a body alone in its group, as the scene starts it.
+    pub fn new(body: Group) -> Self {
+        Self {
+            known: Known::Exact {
+                body: Box::new(body),
+                now: 0.0,
+            },
+            energy: 0.0,
+            momentum: 0.0,
+        }
+    }
+
+    /// Strikes the true body as the simulated one is struck.
+    pub fn strike(&mut self, index: usize, impulse: Framed, point: Option<Framed>, at: f64) {
+        if let Known::Exact { body, now } = &mut self.known {
+            move_to(body, now, at);
+            body.strike(index, impulse, point);
+        }
+    }
+
+    /// Goes on under what acts from `t` until `until`; `simulated` is the body as it is now.
+    pub fn set_out(
+        &mut self,
+        (scene, active): (&Scene, &[usize]),
+        (t, until): (f64, f64),
+        simulated: Simulated<'_>,
+    ) {
+        let known = std::mem::replace(&mut self.known, Known::Nothing);
+        let exact = match (known, closed_form()) {
+            (Known::Exact { mut body, mut now }, Some(method)) => {
+                move_to(&mut body, &mut now, t);
+                body.load(scene, active);
+                let takes = body.refusal(method, until).is_none();
+                takes.then(|| {
+                    body.set_out(&mut Exactly(method), t, until);
+                    body
+                })
+            }
+            _ => None,
+        };
+        self.known = match exact {
+            Some(body) => Known::Exact { body, now: t },
+            None => kept(simulated).map_or(Known::Nothing, Known::Kept),
+        };
+    }
+
+    /// How far the simulated body is off at time `t`.
+    pub fn deviation(&mut self, subject: &Subject, sample: &Sample, t: f64) -> Deviation {
+        let momentum_w = subject.momentum_w(&sample.motion);
+        let kinetic = subject.energy(&sample.motion);
+        let (attitude, energy, momentum) = match &mut self.known {
+            Known::Nothing => return Deviation::default(),
+            Known::Exact { body, now } => {
+                move_to(body, now, t);
+                let Some(truth) = body.motions().next() else {
+                    return Deviation::default();
+                };
+                let off = angle_between(truth.q_wb, sample.motion.q_wb);
+                let true_momentum_w = subject.momentum_w(&truth);
+                let energy = kinetic - subject.energy(&truth);
+                self.energy = self.energy.max(subject.energy(&truth));
+                self.momentum = self.momentum.max(true_momentum_w.norm());
+                (Some(off), energy, (momentum_w - true_momentum_w).norm())
+            }
+            Known::Kept(kept) => {
+                self.energy = self.energy.max(kinetic);
+                self.momentum = self.momentum.max(momentum_w.norm());
+                let change = momentum_w - kept.momentum_w;
+                let energy = kinetic + potential(&kept.weights, subject, sample) - kept.energy;
+                let momentum = kept.along.map_or(change.norm(), |d| change.dot(&d).abs());
+                (None, energy, momentum)
+            }
+        };
+        let part = |off: f64, of: f64| if off == 0.0 { 0.0 } else { off / of };
+        Deviation {
+            attitude,
+            energy: Some(part(energy, self.energy)),
+            momentum: Some(part(momentum, self.momentum)),
+        }
+    }
+}
+
+/// Takes a body in closed form to time `t`.
+fn move_to(body: &mut Group, now: &mut f64, t: f64) {
+    if t > *now {
+        body.take(&[Step {
+            from: *now,
+            h: t - *now,
+            to: t,
+            keep: false,
+        }]);
+        *now = t;
+    }
+}
+
+/// What the model keeps of a body under its load.
+fn kept((subject, sample, group, body): Simulated<'_>) -> Option<Kept> {
+    let weights = group.weights(body)?;
+    let directions = weights.iter().filter_map(|w| Unit::try_new(w.force_w, 0.0));
+    let along = directions.clone().next();
+    if let Some(first) = along {
+        let mut others = directions;
+        // Forces along two lines keep no component at all; 1e-15 is a rounding of unit vectors.
+        if others.any(|other| first.cross(&other).norm() > 1e-15) {
+            return None;
+        }
+    }
+    Some(Kept {
+        energy: subject.energy(&sample.motion) + potential(&weights, subject, sample),
+        momentum_w: subject.momentum_w(&sample.motion),
+        along,
+        weights,
+    })
+}
+
+/// `-Σ F · p`, p where the force acts.
+fn potential(weights: &[Weight], subject: &Subject, sample: &Sample) -> f64 {
+    let reference_w = sample.reference_w(subject);
+    let of = |weight: &Weight| {
+        let point_w = reference_w + sample.motion.q_wb * weight.point_b;
+        -weight.force_w.dot(&point_w)
+    };
+    weights.iter().map(of).sum()
+}
