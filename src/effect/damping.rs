@@ -41,6 +41,11 @@ pub struct Decay {
 
 impl Decay {
     /// 1/s.
+    pub fn linear_rate(&self) -> f64 {
+        self.linear.rate
+    }
+
+    /// 1/s.
     pub fn angular_rate(&self) -> f64 {
         self.angular.rate
     }

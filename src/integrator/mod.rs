@@ -8,6 +8,7 @@
 //! A kernel is written for one body in nalgebra's terms and called for the eight lanes of a block
 //! in a loop that is compiled for the vector widths the processor has.
 
+mod closed_form;
 mod common;
 mod explicit_euler;
 mod info;
@@ -106,6 +107,7 @@ pub const METHODS: &[&dyn Method] = &[
     &Stepped(explicit_euler::ExplicitEuler),
     &Stepped(lie_midpoint::LieMidpoint),
     &Stepped(rk4::Rk4),
+    &closed_form::ClosedForm,
 ];
 
 /// The method used where a scene names none: the most accurate of those that take every load.

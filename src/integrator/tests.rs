@@ -156,6 +156,44 @@ fn fixed_methods(
     })
 }
 
+/// The methods that take this load and choose their own steps, or need none; with the
+/// tolerances to try.
+fn methods_of_own_steps(
+    load: &Load,
+    bodies: &(InertialBlock, StateBlock),
+) -> impl Iterator<Item = (&'static dyn Method, &'static [f64])> {
+    let interval = interval(load, bodies.0, 1.0);
+    METHODS.iter().copied().filter_map(move |method| {
+        let info = method.info();
+        let tolerances: &[f64] = match info.kind {
+            Kind::Fixed => return None,
+            Kind::Adaptive => &[1e-6, 1e-9, 1e-12, 1e-15],
+            Kind::Closed => &[0.0],
+        };
+        let takes = info.refuses(&interval).is_none();
+        takes.then_some((method, tolerances))
+    })
+}
+
+/// The state at `t` of the methods of [`methods_of_own_steps`], and a bound on its error: a hundred
+/// times the tolerance for every radian turned (a step turns half a radian or so, and errors of
+/// phase grow as the square of the time), and a few roundings of each radian.
+fn by_tolerance(
+    method: &dyn Method,
+    tolerance: f64,
+    load: &Load,
+    bodies: &(InertialBlock, StateBlock),
+    t: f64,
+) -> (State, f64) {
+    let interval = Interval {
+        tolerance,
+        ..interval(load, bodies.0, t)
+    };
+    let end = advance_block(method, interval, &bodies.1, &steps(t, 7)).get(0);
+    let radians = 1.0 + bodies.1.get(0).omega_w.norm() * t;
+    (end, (100.0 * tolerance + 2e-15) * radians)
+}
+
 #[track_caller]
 fn has_order(method: &dyn Method, what: &str, error: impl Fn(u32) -> f64) {
     let info = method.info();
@@ -201,6 +239,43 @@ fn every_method_shows_the_order_it_declares_on_a_free_triaxial_body() {
 }
 
 #[test]
+fn methods_with_steps_of_their_own_meet_outside_digits_within_their_tolerance() {
+    let (bodies, reference) = free_triaxial();
+    let load = gyroscopic();
+    for (method, tolerances) in methods_of_own_steps(&load, &bodies) {
+        for &tolerance in tolerances {
+            let (end, bound) = by_tolerance(method, tolerance, &load, &bodies, 10.0);
+            let error = angle(end.q_wp, reference);
+            assert!(
+                error < bound,
+                "{} at {tolerance:e}: {error:e}",
+                method.info().name
+            );
+        }
+    }
+}
+
+#[test]
+fn methods_with_steps_of_their_own_follow_a_damped_free_body() {
+    let (c, t): (f64, f64) = (0.3, 4.0);
+    let (bodies, exact) = damped_triaxial(c, t);
+    let mut load = gyroscopic();
+    let rates = vec![Some(c), Some(c), None, None];
+    effect("damping", Value::Table(rates), &mut load);
+    for (method, tolerances) in methods_of_own_steps(&load, &bodies) {
+        for &tolerance in tolerances {
+            let (end, bound) = by_tolerance(method, tolerance, &load, &bodies, t);
+            let error = angle(end.q_wp, exact);
+            assert!(
+                error < bound,
+                "{} at {tolerance:e}: {error:e}",
+                method.info().name
+            );
+        }
+    }
+}
+
+#[test]
 fn the_order_test_can_fail() {
     // The tutorial's model (no gyroscopic term) is another motion: it must not converge to this.
     let (bodies, reference) = free_triaxial();
@@ -211,19 +286,25 @@ fn the_order_test_can_fail() {
     }
 }
 
+/// The free triaxial body damped at rate c, and its attitude at t: the undamped one's at
+/// `(1 - e^{-ct})/c`. The closed form shares no code with the methods that step, and has outside
+/// digits of its own.
+fn damped_triaxial(c: f64, t: f64) -> ((InertialBlock, StateBlock), Quaternion<f64>) {
+    let (bodies, _) = free_triaxial();
+    let (body, start) = (bodies.0.get(0), bodies.1.get(0));
+    let motion = FreeMotion::new(body.moments, start.q_wp, start.to_principal(start.omega_w));
+    let slow = (1.0 - (-c * t).exp()) / c;
+    (bodies, motion.attitude(slow))
+}
+
 #[test]
 fn a_damped_free_body_is_the_free_one_at_a_slower_time() {
     // τ = -c I ω: L decays as e^{-ct} and the motion is the undamped one at s = (1 - e^{-ct})/c.
-    let (bodies, _) = free_triaxial();
     let (c, t): (f64, f64) = (0.3, 4.0);
-    let slow = (1.0 - (-c * t).exp()) / c;
+    let (bodies, exact) = damped_triaxial(c, t);
     let mut load = gyroscopic();
     let rates = vec![Some(c), Some(c), None, None];
     effect("damping", Value::Table(rates), &mut load);
-    // The closed form shares no code with the methods, and has outside digits of its own.
-    let (body, start) = (bodies.0.get(0), bodies.1.get(0));
-    let motion = FreeMotion::new(body.moments, start.q_wp, start.to_principal(start.omega_w));
-    let exact = motion.attitude(slow);
     for method in fixed_methods(&load, &bodies) {
         has_order(method, "damped attitude", |n| {
             angle(advance(method, &load, &bodies, t, n).q_wp, exact)
