@@ -9,6 +9,7 @@
 //! in a loop that is compiled for the vector widths the processor has.
 
 mod closed_form;
+mod cf4;
 mod common;
 mod explicit_euler;
 mod info;
@@ -16,6 +17,7 @@ mod lie_midpoint;
 mod one_step;
 mod pieces;
 mod rk4;
+mod scalar;
 mod semi_implicit;
 
 pub use pieces::Pieces;
@@ -108,6 +110,7 @@ pub const METHODS: &[&dyn Method] = &[
     &Stepped(lie_midpoint::LieMidpoint),
     &Stepped(rk4::Rk4),
     &closed_form::ClosedForm,
+    &Stepped(cf4::Cf4),
 ];
 
 /// The method used where a scene names none: the most accurate of those that take every load.

@@ -21,7 +21,7 @@ fn effect(name: &str, value: Value, load: &mut Load) {
     }
 }
 
-fn gyroscopic() -> Load {
+pub(super) fn gyroscopic() -> Load {
     let mut load = Load::default();
     effect("gyroscopic", Value::Switch(true), &mut load);
     load
@@ -34,7 +34,7 @@ fn damped(rate: f64) -> Load {
     load
 }
 
-fn block(inertia: Vector3<f64>, state: State) -> (InertialBlock, StateBlock) {
+pub(super) fn block(inertia: Vector3<f64>, state: State) -> (InertialBlock, StateBlock) {
     let properties =
         MassProperties::new(1.0, Matrix3::from_diagonal(&inertia), [false; 3]).unwrap();
     let (inertial, _) = Inertial::new(&properties, None);
@@ -45,7 +45,7 @@ fn block(inertia: Vector3<f64>, state: State) -> (InertialBlock, StateBlock) {
     (inertials, states)
 }
 
-fn spinning(q: UnitQuaternion<f64>, omega_w: Vector3<f64>) -> State {
+pub(super) fn spinning(q: UnitQuaternion<f64>, omega_w: Vector3<f64>) -> State {
     State {
         x_w: Vector3::zeros(),
         v_w: Vector3::zeros(),
@@ -55,7 +55,7 @@ fn spinning(q: UnitQuaternion<f64>, omega_w: Vector3<f64>) -> State {
 }
 
 /// `n` equal steps to `t`.
-fn steps(t: f64, n: u32) -> Vec<Step> {
+pub(super) fn steps(t: f64, n: u32) -> Vec<Step> {
     let h = t / f64::from(n);
     let step = |k: u32| Step {
         from: f64::from(k) * h,
@@ -66,7 +66,7 @@ fn steps(t: f64, n: u32) -> Vec<Step> {
     (0..n).map(step).collect()
 }
 
-fn interval(load: &Load, inertial: InertialBlock, until: f64) -> Interval {
+pub(super) fn interval(load: &Load, inertial: InertialBlock, until: f64) -> Interval {
     Interval {
         load: load.clone(),
         inertial,
@@ -87,7 +87,7 @@ fn advance_block(
     stepper.state()
 }
 
-fn advance(
+pub(super) fn advance(
     method: &dyn Method,
     load: &Load,
     bodies: &(InertialBlock, StateBlock),
@@ -99,13 +99,13 @@ fn advance(
 }
 
 /// Angle between two attitudes, rad.
-fn angle(a: Quaternion<f64>, b: Quaternion<f64>) -> f64 {
+pub(super) fn angle(a: Quaternion<f64>, b: Quaternion<f64>) -> f64 {
     let d = a.conjugate() * b;
     2.0 * d.imag().norm().atan2(d.w.abs())
 }
 
 /// Least-squares slope of log(error) over log(h).
-fn slope(points: &[(f64, f64)]) -> f64 {
+pub(super) fn slope(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
     let logs = points.iter().map(|(h, error)| (h.ln(), error.ln()));
     let (mx, my) = logs
@@ -119,7 +119,7 @@ fn slope(points: &[(f64, f64)]) -> f64 {
 
 /// The method's errors over a ladder of step counts, each √2 times the last: five from where its
 /// leading term leads, none where rounding shows.
-fn ladder(order: u32, error: impl Fn(u32) -> f64) -> Vec<(f64, f64)> {
+pub(super) fn ladder(order: u32, error: impl Fn(u32) -> f64) -> Vec<(f64, f64)> {
     // Rounding of some thousand steps.
     const ROUNDING: f64 = 2e-12;
     // By trial: slopes between two neighbours have settled below these.
@@ -212,7 +212,7 @@ fn has_order(method: &dyn Method, what: &str, error: impl Fn(u32) -> f64) {
 /// The free triaxial body of an outside reference: I = (0.6, 0.8, 1), L = (1.8, 0.4, -0.9),
 /// identity start, and its attitude at t = 10 computed in 60 digits (mpmath, Legendre form and an
 /// independent Taylor integration).
-fn free_triaxial() -> ((InertialBlock, StateBlock), Quaternion<f64>) {
+pub(super) fn free_triaxial() -> ((InertialBlock, StateBlock), Quaternion<f64>) {
     let inertia = Vector3::new(0.6, 0.8, 1.0);
     let omega = Vector3::new(1.8, 0.4, -0.9).component_div(&inertia);
     let reference = Quaternion::new(

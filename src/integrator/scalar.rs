@@ -1,0 +1,36 @@
+//! What kernels that go body by body share: the occupied lanes of a block, one after the other, and
+//! the rates of change there.
+
+use super::Interval;
+use super::common::{RateBlock, rate, with_forces};
+use crate::body::{LANES, State, StateBlock};
+use nalgebra::Vector3;
+
+/// The block of what `f` says of each body.
+pub fn each(interval: &Interval, mut f: impl FnMut(usize) -> State) -> StateBlock {
+    let mut block = StateBlock::default();
+    for lane in 0..interval.bodies.min(LANES) {
+        block.set(lane, f(lane));
+    }
+    block
+}
+
+/// `y' = f(t, y)` of each body, without damping.
+pub fn rates(t: f64, interval: &Interval, y: &StateBlock) -> RateBlock {
+    let (load, inertial) = (&interval.load, &interval.inertial);
+    let wrench = load.wrench(t, inertial, y);
+    with_forces!(load, wrench.as_ref(), |forces| each(interval, |lane| rate(
+        lane,
+        forces,
+        &inertial.get(lane),
+        y.get(lane)
+    )))
+}
+
+/// The state turned by the rotation vector `v` (world, rad): `q ← exp(v) q`.
+pub fn turned(v: Vector3<f64>, s: State) -> State {
+    State {
+        q_wp: crate::math::exponential(v) * s.q_wp,
+        ..s
+    }
+}
