@@ -9,6 +9,7 @@
 //! in a loop that is compiled for the vector widths the processor has.
 
 mod closed_form;
+mod buss;
 mod cf4;
 mod common;
 mod explicit_euler;
@@ -108,6 +109,8 @@ pub const METHODS: &[&dyn Method] = &[
     &Stepped(semi_implicit::SemiImplicit),
     &Stepped(explicit_euler::ExplicitEuler),
     &Stepped(lie_midpoint::LieMidpoint),
+    &buss::BUSS,
+    &buss::BUSS3,
     &Stepped(rk4::Rk4),
     &closed_form::ClosedForm,
     &Stepped(cf4::Cf4),

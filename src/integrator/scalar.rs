@@ -5,11 +5,17 @@ use super::Interval;
 use super::common::{RateBlock, rate, with_forces};
 use crate::body::{LANES, State, StateBlock};
 use nalgebra::Vector3;
+use std::ops::Range;
+
+/// The lanes that hold a body.
+pub fn occupied(interval: &Interval) -> Range<usize> {
+    0..interval.bodies.min(LANES)
+}
 
 /// The block of what `f` says of each body.
 pub fn each(interval: &Interval, mut f: impl FnMut(usize) -> State) -> StateBlock {
     let mut block = StateBlock::default();
-    for lane in 0..interval.bodies.min(LANES) {
+    for lane in occupied(interval) {
         block.set(lane, f(lane));
     }
     block

@@ -27,7 +27,7 @@ pub(super) fn gyroscopic() -> Load {
     load
 }
 
-fn damped(rate: f64) -> Load {
+pub(super) fn damped(rate: f64) -> Load {
     let mut load = Load::default();
     let rates = vec![Some(rate), Some(rate), None, None];
     effect("damping", Value::Table(rates), &mut load);
@@ -382,7 +382,8 @@ fn every_method_has_its_order_in_place_and_velocities_under_a_driven_load() {
     let bodies = block(Vector3::new(0.3, 0.5, 0.6), start);
     let mut load = Load::default();
     load.push(Arc::new(Driven));
-    let t = 4.0;
+    // Not 4: there the h² term of Heun's error in attitude passes through zero.
+    let t = 3.0;
     let (x, v) = Driven::place(t);
     let (omega, turned) = Driven::turn(t);
     let q = axis_angle(Unit::new_unchecked(Vector3::y()), turned).into_inner();
