@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 use std::ops::Range;
 use std::path::Path;
-use torquescope::scene::Scene;
+use torquescope::cost::Plan;
+use torquescope::scene::{Scene, Stepping};
 use torquescope::sim::{Outcome, Simulation};
 use torquescope::trace::{Instant, Note, Sample, Sink, SinkError, Subject, Track};
 
@@ -52,7 +53,13 @@ fn run(scene: &Scene) -> (Vec<Subject>, Outcome, Memory) {
     let simulation = Simulation::new(scene);
     let subjects = simulation.subjects().to_vec();
     let mut memory = Memory::default();
-    let (outcome, done) = simulation.run(&mut memory);
+    let (outcome, done) = match scene.stepping {
+        Stepping::Method { .. } => simulation.run(&mut memory),
+        Stepping::Accuracy(_) => {
+            let plan = Plan::of(&scene).unwrap_or_else(|error| panic!("{error}"));
+            simulation.run_by(&mut plan.chooser(), &mut memory)
+        }
+    };
     done.unwrap();
     (subjects, outcome, memory)
 }

@@ -126,7 +126,7 @@ impl Stepper for Run {
         for step in steps {
             self.step(step.from, step.h);
             if step.keep {
-                kept.kick(self.state);
+                kept.push(self.state);
             }
         }
         self.steps += steps.len() as u64;

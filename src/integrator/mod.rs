@@ -8,9 +8,9 @@
 //! A kernel is written for one body in nalgebra's terms and called for the eight lanes of a block
 //! in a loop that is compiled for the vector widths the processor has.
 
-mod closed_form;
 mod buss;
 mod cf4;
+mod closed_form;
 mod common;
 mod explicit_euler;
 mod info;
