@@ -1,16 +1,16 @@
 //! `cost SCENE`: what accuracy costs on this scene, by every method.
 
 use super::{Wrong, print};
-use crate::cost::{self, Advice, Cost, Ladder, Progress, Rung, Spread, plot};
+use crate::cost::{self, Advice, Cost, Ladder, Progress, Race, Rung, Spread, plot};
 use crate::integrator::{self, METHODS, Method};
 use crate::record::{Heading, Recorder};
 use crate::scene::{Scene, StateRate, Stepping};
 use crate::sim::{Choose, Simulation};
-use crate::trace::short;
+use crate::trace::{StreamSet, short};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -83,7 +83,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         print::out(&table(&scene, &cost, &advice))?;
     }
     if !arguments.table {
-        files(arguments, &scene, &cost)?;
+        files(arguments, &scene, &cost, &advice)?;
     }
     Ok(())
 }
@@ -284,7 +284,12 @@ fn csv(cost: &Cost) -> String {
 }
 
 /// Writes the plots and the recording and says where they are.
-fn files(arguments: &Arguments, scene: &Scene, cost: &Cost) -> anyhow::Result<()> {
+fn files(
+    arguments: &Arguments,
+    scene: &Scene,
+    cost: &Cost,
+    advice: &Advice<'_>,
+) -> anyhow::Result<()> {
     let prefix = match &arguments.out {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}-cost", scene.name)),
@@ -298,8 +303,66 @@ fn files(arguments: &Arguments, scene: &Scene, cost: &Cost) -> anyhow::Result<()
     let (svg, png) = (with(".svg"), with(".png"));
     plot::svg(cost, &title, &svg)?;
     plot::png(cost, &title, &png)?;
-    print::err(&format!("{}, {}", svg.display(), png.display()));
+    let recording = with(".rrd");
+    record(scene, cost, advice, &recording)?;
+    print::err(&format!(
+        "{}, {}, {1}\nto open it: torquescope view {}",
+        svg.display(),
+        png.display(),
+        recording.display()
+    ));
     Ok(())
+}
+
+/// A frame of a game: at this step methods part within seconds.
+const FRAME: f64 = 1.0 / 60.0;
+
+/// Records the plot, and the body by every method beside the true one.
+fn record(scene: &Scene, cost: &Cost, advice: &Advice<'_>, path: &Path) -> anyhow::Result<()> {
+    let size = Simulation::new(scene)
+        .subjects()
+        .first()
+        .map_or(1.0, size_of);
+    let mut race = Race::new(scene, FRAME, 3.0 * size)?;
+    let streams = ["omega", "momentum", "energy", "error", "drift"];
+    let streams = streams.iter().filter_map(|name| StreamSet::of(name));
+    race.scene.record.streams = streams.fold(StreamSet::none(), StreamSet::with);
+    let simulation = Simulation::new(&race.scene);
+    let subjects = simulation.subjects().to_vec();
+    let mut heading = Heading::of(&race.scene, &simulation);
+    heading.title = format!("{}: what accuracy costs", scene.title);
+    heading.notes = notes(scene, cost, advice, &race);
+    heading.price = Some(cost.clone());
+    let mut recorder = Recorder::create(path, &heading, &subjects)?;
+    race.run(&mut recorder)?;
+    recorder.finish()?;
+    Ok(())
+}
+
+fn notes(scene: &Scene, cost: &Cost, advice: &Advice<'_>, race: &Race) -> String {
+    let step = cost::time(race.scene.step);
+    let mut text = format!(
+        "**{advice}**\n\nEach line of the plot is a method, each point a step or a tolerance; the \
+         lower and the further left the better. Errors are the largest angle from the true attitude, \
+         at {} instants of {} s, against {}.\n\nIn the next tab the body is there once for every \
+         method, at steps of {step}, beside the true one: watch them part, and read *error* in the \
+         accuracy plots.\n",
+        cost.instants,
+        short(scene.duration),
+        truth(cost)
+    );
+    if !race.lost.is_empty() {
+        text += &format!("\nLost before the end: {}.\n", race.lost.join(", "));
+    }
+    text +=
+        "\n| no other is cheaper and truer | error (rad) | time per simulated s |\n|---|--:|--:|\n";
+    let mut front: Vec<&Rung> = cost.rungs.iter().filter(|rung| rung.on_front).collect();
+    front.sort_by(|a, b| a.time.median.total_cmp(&b.time.median));
+    for rung in front {
+        let (error, time) = (two(rung.error), cost::time(rung.time.median));
+        text += &format!("| {} | {error} | {time} |\n", rung.setting());
+    }
+    text
 }
 
 /// What `--json` prints. A number that is not finite is null.

@@ -4,7 +4,7 @@
 use super::check::{self, bare};
 use super::reference::Reference;
 use crate::integrator::{DEFAULT_METHOD, Kind, Method};
-use crate::scene::{Scene, Stepping};
+use crate::scene::{Record, Scene, Stepping};
 use crate::sim::{Choice, Choose, SimError, Stated};
 use crate::trace::short;
 use std::ops::ControlFlow;
@@ -55,6 +55,7 @@ pub struct Spread {
 }
 
 /// All of it.
+#[derive(Clone, Debug)]
 pub struct Cost {
     pub rungs: Vec<Rung>,
     /// Methods that do not take the scene's torques, and why.
@@ -97,6 +98,7 @@ impl Ladder {
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Cost, SimError> {
         let between = scene.duration / INSTANTS;
+        let record = &scene.record;
         let scene = bare(scene, between, 1.0 / between);
         let reference = Reference::of(&scene)?;
         let mut cost = Cost {
@@ -127,6 +129,7 @@ impl Ladder {
                     scene: &scene,
                     reference: &reference,
                     method: *method,
+                    record,
                     weigh,
                 };
                 climb.rungs(&mut cost.rungs, &mut watch);
@@ -141,7 +144,7 @@ impl Ladder {
 }
 
 /// Why a method does not take a scene.
-fn refusal(scene: &Scene, method: &'static dyn Method) -> Option<String> {
+pub(super) fn refusal(scene: &Scene, method: &'static dyn Method) -> Option<String> {
     let mut scene = scene.clone();
     scene.stepping = Stepping::Method {
         method,
@@ -156,6 +159,8 @@ struct Climb<'a> {
     scene: &'a Scene,
     reference: &'a Reference,
     method: &'static dyn Method,
+    /// What the scene itself records.
+    record: &'a Record,
     weigh: Weigh<'a>,
 }
 
@@ -250,7 +255,10 @@ impl Climb<'_> {
             time: Spread::of(times),
             evaluations: work.evaluations as f64 / scene.duration,
             steps: work.steps as f64 / scene.duration,
-            bytes: (self.weigh)(&scene, &mut Stated(choice)),
+            bytes: {
+                scene.record = self.record.clone();
+                (self.weigh)(&scene, &mut Stated(choice))
+            },
             on_front: false,
         })
     }
@@ -275,11 +283,14 @@ impl Spread {
     }
 }
 
+/// An attitude more than this off (rad) says nothing about a motion.
+const LOST: f64 = 1.0;
+
 /// Marks the rungs to which no other is both cheaper and truer.
 fn mark_front(rungs: &mut [Rung]) {
     let mut order: Vec<usize> = (0..rungs.len()).collect();
     order.sort_by(|&a, &b| rungs[a].time.median.total_cmp(&rungs[b].time.median));
-    let mut truest = f64::INFINITY;
+    let mut truest = LOST;
     for k in order {
         if rungs[k].error < truest {
             truest = rungs[k].error;

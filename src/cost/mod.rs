@@ -6,9 +6,11 @@ mod ladder;
 mod plan;
 #[cfg(feature = "cli")]
 pub mod plot;
+mod race;
 mod reference;
 
 pub use check::Checked;
 pub use ladder::{Advice, Cost, Ladder, Progress, Rung, Spread, time};
 pub use plan::{Plan, PlanError, Planned};
+pub use race::Race;
 pub use reference::{EXACT, Reference};

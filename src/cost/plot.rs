@@ -13,7 +13,7 @@ const SIZE: (u32, u32) = (1100, 760);
 /// The free typeface that the program carries (Ubuntu Light).
 const TYPEFACE: &[u8] = epaint_default_fonts::UBUNTU_LIGHT;
 
-/// Okabe & Ito's colours, told apart by all eyes; black for a ninth is not needed: shapes alternate.
+/// Okabe & Ito's colours, told apart by all eyes, with a darker yellow for a white ground.
 const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -135,10 +135,10 @@ fn draw<B: DrawingBackend>(
     let (errors, times) = (range(|p| p.0), range(|p| p.1));
     let words = |error: DrawingAreaErrorKind<B::ErrorType>| error.to_string();
     area.fill(&WHITE).map_err(words)?;
-    let mut chart = ChartBuilder::on(area)
+    let (chart, legend) = area.split_horizontally(SIZE.0 as i32 - LEGEND);
+    let mut chart = ChartBuilder::on(&chart)
         .caption(title, ("sans-serif", 22))
         .margin(16)
-        .margin_right(180)
         .x_label_area_size(56)
         .y_label_area_size(80)
         .build_cartesian_2d(errors.log_scale(), times.log_scale())
@@ -156,57 +156,74 @@ fn draw<B: DrawingBackend>(
         .draw()
         .map_err(words)?;
     for (k, line) in lines.iter().enumerate() {
-        let colour = COLOURS[k % COLOURS.len()];
-        let dashed = k >= COLOURS.len();
+        let look = Look::of(k);
         let places: Vec<(f64, f64)> = line.rungs.iter().map(|rung| at(rung)).collect();
-        let style = colour.stroke_width(2);
-        let legend = move |(x, y): (i32, i32)| {
-            let marks = [(x, y), (x + 22, y)];
-            PathElement::new(marks, style)
-        };
-        if dashed {
-            let series = DashedLineSeries::new(places.iter().copied(), 6, 5, style);
-            chart
-                .draw_series(series)
-                .map_err(words)?
-                .label(line.method)
-                .legend(legend);
-        } else {
-            let series = LineSeries::new(places.iter().copied(), style);
-            chart
-                .draw_series(series)
-                .map_err(words)?
-                .label(line.method)
-                .legend(legend);
+        let along = places.iter().copied();
+        match look.gap {
+            0 => chart.draw_series(LineSeries::new(along, look.style())),
+            gap => chart.draw_series(DashedLineSeries::new(along, 7, gap, look.style())),
         }
+        .map_err(words)?;
         let marks = places.iter().map(|&place| {
-            let mark = EmptyElement::at(place);
-            match dashed {
-                true => mark + Rectangle::new([(-3, -3), (3, 3)], colour.filled()),
-                false => mark + Rectangle::new([(-3, -3), (3, 3)], colour.filled()),
-            }
+            EmptyElement::at(place) + Rectangle::new([(-3, -3), (3, 3)], look.colour.filled())
         });
         chart.draw_series(marks).map_err(words)?;
     }
-    let front = cost
-        .rungs
-        .iter()
-        .filter(|rung| rung.on_front && rung.error.is_finite());
+    let front = cost.rungs.iter().filter(|rung| rung.on_front);
     let rings = front.map(|rung| Circle::new(at(rung), 8, BLACK.stroke_width(1)));
-    chart
-        .draw_series(rings)
-        .map_err(words)?
-        .label("no other is both cheaper and truer")
-        .legend(|(x, y)| Circle::new((x + 11, y), 6, BLACK.stroke_width(1)));
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.85))
-        .border_style(RGBColor(200, 200, 200))
-        .label_font(("sans-serif", 15))
-        .draw()
-        .map_err(words)?;
+    chart.draw_series(rings).map_err(words)?;
+    draw_legend(&lines, &legend).map_err(words)?;
     area.present().map_err(words)
+}
+
+/// How a method's line looks: eight colours, then the same dashed, then dotted.
+struct Look {
+    colour: RGBColor,
+    /// Pixels between dashes; 0 is an unbroken line.
+    gap: i32,
+}
+
+impl Look {
+    fn of(k: usize) -> Self {
+        Self {
+            colour: COLOURS[k % COLOURS.len()],
+            gap: [0, 5, 14][(k / COLOURS.len()).min(2)],
+        }
+    }
+
+    fn style(&self) -> ShapeStyle {
+        self.colour.stroke_width(2)
+    }
+}
+
+/// Pixels.
+const LEGEND: i32 = 220;
+const LINE: i32 = 22;
+
+fn draw_legend<B: DrawingBackend>(
+    lines: &[Line<'_>],
+    area: &DrawingArea<B, Shift>,
+) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+    let words = ("sans-serif", 15).into_font().color(&BLACK);
+    for (k, line) in lines.iter().enumerate() {
+        let (look, y) = (Look::of(k), 52 + LINE * k as i32);
+        let dash = if look.gap == 0 { 34 } else { 7 };
+        let mut x = 4;
+        while x < 38 {
+            let end = (x + dash).min(38);
+            area.draw(&PathElement::new([(x, y), (end, y)], look.style()))?;
+            x = end + look.gap.max(1);
+        }
+        area.draw(&Rectangle::new(
+            [(18, y - 3), (24, y + 3)],
+            look.colour.filled(),
+        ))?;
+        area.draw(&Text::new(line.method, (46, y - 8), words.clone()))?;
+    }
+    let y = 58 + LINE * lines.len() as i32;
+    area.draw(&Circle::new((21, y), 8, BLACK.stroke_width(1)))?;
+    area.draw(&Text::new("no other is both", (46, y - 8), words.clone()))?;
+    area.draw(&Text::new("cheaper and truer", (46, y + 9), words))
 }
 
 /// Once a process.

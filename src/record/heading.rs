@@ -1,6 +1,7 @@
 //! What a recording says of itself, besides its trace.
 
 use super::scale::Scales;
+use crate::cost::Cost;
 use crate::scene::{Action, Scene};
 use crate::sim::Simulation;
 use crate::trace::StreamSet;
@@ -21,6 +22,8 @@ pub struct Heading {
     pub has_pushes: bool,
     pub has_impulses: bool,
     pub streams: StreamSet,
+    /// What accuracy costs on the scene, where that is what the recording is about.
+    pub price: Option<Cost>,
     pub(super) scales: Scales,
 }
 
@@ -43,8 +46,14 @@ impl Heading {
             has_pushes: scene.events.iter().any(|event| is_push(&event.action)),
             has_impulses: scene.events.iter().any(|event| is_impulse(&event.action)),
             streams: scene.record.streams,
+            price: None,
             scales: Scales::new(simulation.subjects(), &simulation.expected()),
         }
+    }
+
+    /// How large the bodies are, m.
+    pub fn size(&self) -> f64 {
+        self.scales.size
     }
 
     /// How long the arrow of an impulse stays, s: a quarter of a second, less in a short scene.

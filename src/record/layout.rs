@@ -9,6 +9,7 @@ use super::heading::Heading;
 use super::look;
 use super::mesh;
 use super::picture::DRAWN;
+use super::price;
 use super::rrd::RrdFile;
 use super::scale;
 use crate::trace::{Subject, short};
@@ -176,13 +177,33 @@ pub fn legend(setting: &Setting<'_>) -> String {
 /// Writes the blueprint.
 pub fn write(file: &mut RrdFile, setting: &Setting<'_>) -> Result<(), RecordError> {
     let mut blueprint = Blueprint::new(file);
-    let mut tabs = vec![overview(&mut blueprint, setting)?];
+    let mut tabs = Vec::new();
+    if setting.heading.price.is_some() {
+        tabs.push(price_tab(&mut blueprint)?);
+    }
+    tabs.push(overview(&mut blueprint, setting)?);
     for (k, subject) in setting.subjects.iter().enumerate().take(MOST_TABS) {
         tabs.push(body_tab(&mut blueprint, setting, k, subject)?);
     }
     let root = blueprint.container(ContainerKind::Tabs, &setting.heading.title, &tabs, &[])?;
     panels(&mut blueprint, setting.heading)?;
     blueprint.finish(&root)
+}
+
+/// The work-precision plot beside what it says.
+fn price_tab(blueprint: &mut Blueprint<'_>) -> Result<Part, RecordError> {
+    let name = "what accuracy costs";
+    let plot = blueprint.view(View {
+        class: "2D",
+        name: "wall time per simulated second (up) against attitude error (right)",
+        origin: price::PATH,
+        contents: vec![format!("+ {}/**", price::PATH)],
+        properties: Vec::new(),
+        visualizers: Vec::new(),
+        hidden: Vec::new(),
+    })?;
+    let text = document(blueprint, "what it says", "/notes")?;
+    blueprint.container(ContainerKind::Horizontal, name, &[plot, text], &[3.0, 1.0])
 }
 
 fn panels(blueprint: &mut Blueprint<'_>, heading: &Heading) -> Result<(), RecordError> {

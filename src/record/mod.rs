@@ -13,6 +13,7 @@ mod look;
 mod mesh;
 mod page;
 mod picture;
+mod price;
 mod recorder;
 mod rrd;
 mod scale;

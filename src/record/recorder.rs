@@ -8,6 +8,7 @@ use super::look;
 use super::mesh;
 use super::page;
 use super::picture::{Impulses, Picture, pictures};
+use super::price;
 use super::rrd::{RrdFile, Store};
 use crate::trace::{
     Instant, Motion, Note, NoteKind, Quantity, Sample, Sink, SinkError, Subject, Track,
@@ -92,6 +93,9 @@ impl Recorder {
         file.statics("/notes", &[&notes])?;
         let legend = TextDocument::from_markdown(layout::legend(&setting));
         file.statics("/legend", &[&legend])?;
+        if let Some(cost) = &heading.price {
+            price::write(&mut file, cost)?;
+        }
         for (k, subject) in subjects.iter().enumerate() {
             let body = BodyRecorder::new(subject, k, heading);
             body.statics(&mut file, k, heading)?;

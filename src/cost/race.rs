@@ -1,0 +1,163 @@
+//! A scene in which one body is there many times, each by another method, beside the true one: how
+//! their motions part can be watched.
+
+use super::ladder::refusal;
+use super::reference::truest;
+use crate::integrator::{Kind, METHODS, Method};
+use crate::math::angle_between;
+use crate::scene::{Action, Framed, Scene, Stepping};
+use crate::sim::{Choice, Choose, Setting, SimError, Simulation};
+use crate::trace::{Instant, Note, Sample, Sink, SinkError, Track};
+use nalgebra::Vector3;
+use std::ops::Range;
+
+/// The scene of a race, and who runs in it.
+pub struct Race {
+    pub scene: Scene,
+    /// By body; the first is the truth.
+    runners: Vec<Option<Choice>>,
+    /// Methods that lose the body before the end.
+    pub lost: Vec<&'static str>,
+}
+
+/// Of methods that choose their own steps.
+const TOLERANCE: f64 = 1e-6;
+
+impl Race {
+    /// Every method that takes the scene's torques and keeps to the end, at steps of `step` s: of
+    /// the body that is there first. `apart`: how far they stand from each other, m.
+    pub fn new(scene: &Scene, step: f64, apart: f64) -> Result<Self, SimError> {
+        let mut alone = scene.clone();
+        alone.bodies.truncate(1);
+        alone.events.retain(|event| event.body == 0);
+        alone.step = step.min(scene.duration);
+        alone.stepping = Stepping::Accuracy(TOLERANCE);
+        let mut runners = vec![None];
+        let mut lost = Vec::new();
+        for method in METHODS.iter().copied() {
+            if method.info().kind == Kind::Closed || refusal(&alone, method).is_some() {
+                continue;
+            }
+            match finishes(&alone, method)? {
+                true => runners.push(Some(choice(method))),
+                false => lost.push(method.info().name),
+            }
+        }
+        let scene = lined_up(&alone, &runners, apart);
+        Ok(Self {
+            scene,
+            runners,
+            lost,
+        })
+    }
+
+    /// Runs it into a sink.
+    pub fn run(&self, sink: &mut dyn Sink) -> Result<(), SimError> {
+        let simulation = Simulation::new(&self.scene);
+        let mut judge = Judge { sink };
+        let (_, done) = simulation.run_by(&mut ByBody(&self.runners), &mut judge);
+        done
+    }
+}
+
+fn choice(method: &'static dyn Method) -> Choice {
+    Choice {
+        method,
+        pieces: 1,
+        tolerance: TOLERANCE,
+    }
+}
+
+fn finishes(scene: &Scene, method: &'static dyn Method) -> Result<bool, SimError> {
+    let runner = [Some(choice(method))];
+    let (_, done) = Simulation::new(scene).run_by(&mut ByBody(&runner), &mut Nowhere);
+    match done {
+        Ok(()) => Ok(true),
+        Err(SimError::NotFinite { .. }) => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// The body once for every runner, in a row along x.
+fn lined_up(alone: &Scene, runners: &[Option<Choice>], apart: f64) -> Scene {
+    let mut scene = alone.clone();
+    scene.bodies.clear();
+    scene.events.clear();
+    for (k, runner) in runners.iter().enumerate() {
+        let shift_w = Vector3::x() * (apart * k as f64);
+        let name = runner.map_or("true", |choice| choice.method.info().name);
+        for body in &alone.bodies {
+            let mut body = body.clone();
+            body.name = name.to_owned();
+            body.label = name.to_owned();
+            body.position_w += shift_w;
+            scene.bodies.push(body);
+        }
+        for event in &alone.events {
+            let mut event = event.clone();
+            event.body = k;
+            if let Action::Push { point, .. } | Action::Impulse { point, .. } = &mut event.action
+                && let Framed::World(p) = point
+            {
+                *p += shift_w;
+            }
+            scene.events.push(event);
+        }
+    }
+    scene
+}
+
+struct ByBody<'a>(&'a [Option<Choice>]);
+
+impl Choose for ByBody<'_> {
+    fn choose(&mut self, setting: &Setting<'_>) -> Choice {
+        let runner = self.0.get(setting.members.start).copied().flatten();
+        runner.unwrap_or_else(|| truest(setting.interval, 0))
+    }
+}
+
+/// Compares every body with the first.
+struct Judge<'a> {
+    sink: &'a mut dyn Sink,
+}
+
+impl Sink for Judge<'_> {
+    fn motions(&mut self, track: &Track<'_>) -> Result<(), SinkError> {
+        self.sink.motions(track)
+    }
+
+    fn samples(
+        &mut self,
+        at: Instant,
+        bodies: Range<usize>,
+        samples: &[Sample],
+    ) -> Result<(), SinkError> {
+        let mut samples = samples.to_vec();
+        if let (0, Some(truth)) = (bodies.start, samples.first().map(|s| s.motion.q_wb)) {
+            for sample in &mut samples {
+                sample.deviation.attitude = Some(angle_between(truth, sample.motion.q_wb));
+            }
+        }
+        self.sink.samples(at, bodies, &samples)
+    }
+
+    fn note(&mut self, at: Instant, note: &Note) -> Result<(), SinkError> {
+        self.sink.note(at, note)
+    }
+}
+
+struct Nowhere;
+
+impl Sink for Nowhere {
+    fn motions(&mut self, _: &Track<'_>) -> Result<(), SinkError> {
+        Ok(())
+    }
+
+    fn samples(&mut self, _: Instant, _: Range<usize>, _: &[Sample]) -> Result<(), SinkError> {
+        Ok(())
+    }
+
+    fn note(&mut self, _: Instant, _: &Note) -> Result<(), SinkError> {
+        Ok(())
+    }
+}
