@@ -13,11 +13,14 @@ mod cf4;
 mod closed_form;
 mod common;
 mod explicit_euler;
+mod implicit_gyroscopic;
 mod info;
 mod lie_midpoint;
+mod momentum_restoring;
 mod one_step;
 mod pieces;
 mod rk4;
+mod rkmk4;
 mod scalar;
 mod semi_implicit;
 
@@ -114,6 +117,10 @@ pub const METHODS: &[&dyn Method] = &[
     &Stepped(rk4::Rk4),
     &closed_form::ClosedForm,
     &Stepped(cf4::Cf4),
+    &Stepped(momentum_restoring::Rapier),
+    &Stepped(momentum_restoring::Jolt),
+    &Stepped(implicit_gyroscopic::Bullet),
+    &Stepped(rkmk4::Rkmk4),
 ];
 
 /// The method used where a scene names none: the most accurate of those that take every load.

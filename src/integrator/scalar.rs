@@ -2,8 +2,9 @@
 //! the rates of change there.
 
 use super::Interval;
-use super::common::{RateBlock, rate, with_forces};
-use crate::body::{LANES, State, StateBlock};
+use super::common::{Acceleration, Applied, Coasting, Forces, RateBlock, rate, with_forces};
+use crate::body::{Inertial, LANES, State, StateBlock};
+use crate::effect::WrenchBlock;
 use nalgebra::Vector3;
 use std::ops::Range;
 
@@ -31,6 +32,19 @@ pub fn rates(t: f64, interval: &Interval, y: &StateBlock) -> RateBlock {
         &inertial.get(lane),
         y.get(lane)
     )))
+}
+
+/// `m⁻¹ F` and `I_w⁻¹ τ` of what is applied alone, without the gyroscopic term.
+pub fn applied(
+    wrench: Option<&WrenchBlock>,
+    lane: usize,
+    body: &Inertial,
+    s: &State,
+) -> Acceleration {
+    match wrench {
+        None => Coasting::<false>.acceleration(lane, body, s),
+        Some(wrench) => Applied::<false>(wrench).acceleration(lane, body, s),
+    }
 }
 
 /// The state turned by the rotation vector `v` (world, rad): `q ← exp(v) q`.
