@@ -319,11 +319,8 @@ const FRAME: f64 = 1.0 / 60.0;
 
 /// Records the plot, and the body by every method beside the true one.
 fn record(scene: &Scene, cost: &Cost, advice: &Advice<'_>, path: &Path) -> anyhow::Result<()> {
-    let size = Simulation::new(scene)
-        .subjects()
-        .first()
-        .map_or(1.0, size_of);
-    let mut race = Race::new(scene, FRAME, 3.0 * size)?;
+    let size = Heading::of(scene, &Simulation::new(scene)).size();
+    let mut race = Race::new(scene, FRAME, 2.5 * size)?;
     let streams = ["omega", "momentum", "energy", "error", "drift"];
     let streams = streams.iter().filter_map(|name| StreamSet::of(name));
     race.scene.record.streams = streams.fold(StreamSet::none(), StreamSet::with);

@@ -12,6 +12,7 @@ mod buss;
 mod cf4;
 mod closed_form;
 mod common;
+mod dop853;
 mod explicit_euler;
 mod implicit_gyroscopic;
 mod info;
@@ -19,6 +20,7 @@ mod lie_midpoint;
 mod momentum_restoring;
 mod one_step;
 mod pieces;
+mod own_steps;
 mod rk4;
 mod rkmk4;
 mod scalar;
@@ -115,6 +117,7 @@ pub const METHODS: &[&dyn Method] = &[
     &buss::BUSS,
     &buss::BUSS3,
     &Stepped(rk4::Rk4),
+    &dop853::Dop853,
     &closed_form::ClosedForm,
     &Stepped(cf4::Cf4),
     &Stepped(momentum_restoring::Rapier),

@@ -11,7 +11,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-fn effect(name: &str, value: Value, load: &mut Load) {
+pub(super) fn effect(name: &str, value: Value, load: &mut Load) {
     let kind = EFFECTS.iter().find(|kind| kind.name == name).unwrap();
     match (kind.make)(&value, 1.0).unwrap() {
         Called::Load(effect) => load.push(effect),
