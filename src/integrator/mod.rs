@@ -19,16 +19,15 @@ mod info;
 mod lie_midpoint;
 mod momentum_restoring;
 mod one_step;
-mod pieces;
 mod own_steps;
+mod pieces;
 mod rk4;
 mod rkmk4;
 mod scalar;
 mod semi_implicit;
 
-pub use pieces::Pieces;
-
 pub use info::{Accepts, Cost, Damping, Kind, MethodInfo, Refusal};
+pub use pieces::Pieces;
 
 use crate::body::{InertialBlock, StateBlock};
 use crate::effect::Load;
@@ -111,19 +110,24 @@ impl Clone for Box<dyn Stepper> {
 
 /// Every method, in the order of the lists.
 pub const METHODS: &[&dyn Method] = &[
+    // The tutorial's, and the one that shows why not.
     &Stepped(semi_implicit::SemiImplicit),
     &Stepped(explicit_euler::ExplicitEuler),
-    &Stepped(lie_midpoint::LieMidpoint),
-    &buss::BUSS,
-    &buss::BUSS3,
-    &Stepped(rk4::Rk4),
-    &dop853::Dop853,
-    &closed_form::ClosedForm,
-    &Stepped(cf4::Cf4),
+    // Engines'.
     &Stepped(momentum_restoring::Rapier),
     &Stepped(momentum_restoring::Jolt),
     &Stepped(implicit_gyroscopic::Bullet),
     &Stepped(rkmk4::Rkmk4),
+    // On the rotation group.
+    &Stepped(lie_midpoint::LieMidpoint),
+    &buss::BUSS,
+    &buss::BUSS3,
+    &Stepped(cf4::Cf4),
+    // General solvers.
+    &Stepped(rk4::Rk4),
+    &dop853::Dop853,
+    // The exact motion.
+    &closed_form::ClosedForm,
 ];
 
 /// The method used where a scene names none: the most accurate of those that take every load.

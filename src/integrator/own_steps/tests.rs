@@ -271,6 +271,10 @@ fn nothing_depends_on_how_the_clock_cuts_the_time() {
 struct Runaway;
 
 impl Effect for Runaway {
+    fn name(&self) -> &'static str {
+        "runaway"
+    }
+
     fn add(&self, _: f64, _: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {
         let v = state.get(0).v_w;
         wrench.add(0, v * v.norm_squared(), Vector3::zeros());
