@@ -31,6 +31,10 @@ enum Damp {
 struct Viscous(f64);
 
 impl Effect for Viscous {
+    fn name(&self) -> &'static str {
+        "viscous"
+    }
+
     fn add(&self, _: f64, _: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {
         wrench.add_torque(0, state.get(0).omega_w * -self.0);
     }
