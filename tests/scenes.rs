@@ -173,10 +173,11 @@ fn every_shipped_scene_runs_and_says_what_to_look_at() {
                 .iter()
                 .all(|blow| blow.sample.alpha_w.norm().is_finite())
         );
-        assert!(!memory.notes.is_empty());
+        let happens = scene.events.len();
+        assert!(memory.notes.len() >= happens, "{}", scene.name);
         seen += 1;
     }
-    assert_eq!(seen, 5);
+    assert_eq!(seen, 6);
 }
 
 #[test]
