@@ -1,12 +1,19 @@
 //! Level 0: the mathematics of rotation, with no notion of a body.
 
+mod agm;
 pub mod carlson;
 pub mod dd;
 mod eigen;
+pub mod elliptic;
 pub mod expansion;
+#[cfg(test)]
+mod oracle;
 mod quaternion;
+mod real;
 
+pub use agm::agm;
 pub use dd::Dd;
 pub use eigen::symmetric_eigen;
 pub use expansion::Expansion;
 pub use quaternion::{angle_between, axis_angle, exponential, spin_rate};
+pub use real::Real;

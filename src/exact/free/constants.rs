@@ -2,8 +2,8 @@
 
 use super::branch::Branch;
 use super::series::Series;
-use crate::math::Dd;
 use crate::math::carlson::rf;
+use crate::math::{Dd, agm};
 use std::f64::consts::PI;
 
 /// Above this k² the series in the complementary nome converge faster.
@@ -38,7 +38,7 @@ impl Constants {
         let d3 = a * s2 + c * s3;
         let g2 = s1 + s2 + s3;
         let gap = c * branch.e2 / Dd::new(i2);
-        let (lambda, s) = agm((b * d3).sqrt(), gap.sqrt(), (c * d3).sqrt());
+        let (lambda, s) = agm_and_sum((b * d3).sqrt(), gap.sqrt(), (c * d3).sqrt());
         let g = g2.sqrt();
         let omega = if lambda.hi == 0.0 {
             g / Dd::new(i2)
@@ -80,7 +80,7 @@ impl Constants {
         }
         // Λ': the AGM of √(B D3) and √(A D1).
         let (start, end) = ((b * self.d3).sqrt(), (self.a * self.d1).sqrt());
-        let dual = agm(start, end, Dd::ONE).0.to_f64();
+        let dual = agm(start, end).to_f64();
         let a0 = 0.5 * dual * t_a;
         if lambda == 0.0 {
             let rate = 0.5 * self.sigma * dual;
@@ -100,7 +100,7 @@ impl Constants {
 }
 
 /// `lim α`, and the sum S that the precession takes: right sides are the old values.
-fn agm(mut alpha: Dd, mut gamma: Dd, mut p: Dd) -> (Dd, Dd) {
+fn agm_and_sum(mut alpha: Dd, mut gamma: Dd, mut p: Dd) -> (Dd, Dd) {
     let mut q = Dd::ONE;
     let mut s = Dd::ONE;
     if gamma.hi == 0.0 {
