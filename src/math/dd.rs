@@ -103,7 +103,12 @@ impl Dd {
     pub fn fraction(self) -> (f64, f64) {
         let whole = self.hi.round();
         let rest = self - Self::new(whole);
-        let more = rest.hi.round();
+        // A half is decided by what is beyond it.
+        let more = if rest.hi.abs() == 0.5 && rest.hi * rest.lo <= 0.0 {
+            0.0
+        } else {
+            rest.hi.round()
+        };
         let rest = rest - Self::new(more);
         (rest.to_f64(), whole + more)
     }
@@ -151,10 +156,10 @@ impl Dd {
     /// `e^{2y} - 1 = (e^y - 1)² + 2 (e^y - 1)` back up.
     fn exponential(self) -> (f64, Self) {
         // Beyond ±800 the result is 0 or ∞ whatever the rest.
-        let x = if self.hi.abs() < 800.0 {
-            self
-        } else {
+        let x = if self.hi.abs() >= 800.0 {
             Self::new(800.0_f64.copysign(self.hi))
+        } else {
+            self
         };
         let n = (x.hi / Self::LN_2.hi).round();
         let y = (x - Self::LN_2 * n).scaled(0.0625);
@@ -345,5 +350,18 @@ mod tests {
         let (part, whole) = (Dd::new(1e9) + third).fraction();
         assert_eq!(whole, 1e9);
         assert!((part - 1.0 / 3.0).abs() < 1e-16);
+        // Halves and their neighbours, in either part.
+        for lo in [-1e-20, 0.0, 1e-20] {
+            for hi in [-2.5, -0.5, 0.5, 1.5, 1e15 + 0.5] {
+                let x = Dd { hi, lo };
+                let (part, whole) = x.fraction();
+                assert!(part.abs() <= 0.5 && whole == whole.round(), "{x:?}");
+                let rest = x - Dd::new(whole);
+                assert!(
+                    rest <= Dd::new(0.5) && rest >= Dd::new(-0.5),
+                    "{x:?} {whole}"
+                );
+            }
+        }
     }
 }

@@ -87,7 +87,8 @@ mod tests {
     /// `k'`, and sn, cn, dn by mpmath; the error against the phase's own rounding.
     #[test]
     fn jacobis_functions_by_outside_digits() {
-        let pick: [(&str, fn((f64, f64, f64)) -> f64, fn((Dd, Dd, Dd)) -> Dd); 3] = [
+        type One<T> = fn((T, T, T)) -> T;
+        let pick: [(&str, One<f64>, One<Dd>); 3] = [
             ("sn", |f| f.0, |f| f.0),
             ("cn", |f| f.1, |f| f.1),
             ("dn", |f| f.2, |f| f.2),
@@ -145,14 +146,14 @@ mod tests {
         let (sn, cn, dn) = jacobi(25.0, 0.75);
         // The phase is 25 π/2K = 23.3: half an ulp of it is 2e-15.
         for (got, digits) in [
-            (sn, -0.969_223_071_486_651_61),
-            (cn, -0.246_184_154_035_106_46),
-            (dn, 0.874_729_477_852_721_76),
+            (sn, -0.969_223_071_486_651_6),
+            (cn, -0.246_184_154_035_106_45),
+            (dn, 0.874_729_477_852_721_8),
         ] {
             assert!((got - digits).abs() < 4e-15, "{got} {digits}");
         }
         let below = 2.0_f64.powi(-9);
         let sn = jacobi(1.25, below * (2.0 - below)).0;
-        assert!((sn - 0.848_768_940_045_053_31).abs() < 3e-16, "{sn}");
+        assert!((sn - 0.848_768_940_045_053_3).abs() < 3e-16, "{sn}");
     }
 }

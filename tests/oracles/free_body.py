@@ -144,13 +144,18 @@ def cases():
     for k in range(8):
         s, v = 10 ** u(-40, 40), 10 ** u(-6, 6)
         yield "scaled", [s * u(1, 2), s * u(1, 2), s * u(1, 2)], [v * u(-1, 1) for _ in range(3)], 10 ** u(0, 3) / v
+    for k in range(8):
+        # Beside the middle axis by 1e-140 to 1e-300: it flips once lambda t passes 300 to 700.
+        e, f = 10 ** u(-300, -140), 10 ** u(-300, -140)
+        yield "beside-separatrix", [1, u(1.5, 2.5), 3], [e * (-1) ** k, u(1, 2), f], 10 ** u(2.7, 4) * (-1) ** (k // 2)
 
 
 def main():
     print("kind,I1,I2,I3,w1,w2,w3,t,qx,qy,qz,qw,w1_t,w2_t,w3_t")
     for n, (kind, I, w, t) in enumerate(cases()):
         I, w, t = [float(x) for x in I], [float(x) for x in w], float(t)
-        q, wt = legendre([mpf(x) for x in I], [mpf(x) for x in w], mpf(t))
+        with mp.workdps(700 if kind == "beside-separatrix" else mp.dps):
+            q, wt = legendre([mpf(x) for x in I], [mpf(x) for x in w], mpf(t))
         if n % 10 == 0 and 0 < t < 50 and kind != "scaled":
             q2, w2 = taylor([mpf(x) for x in I], [mpf(x) for x in w], t)
             off = min(max(abs(a - s * b) for a, b in zip(q, q2)) for s in (1, -1))
@@ -159,4 +164,5 @@ def main():
         print(",".join([kind] + [x.hex() for x in I + w + [t]] + [mp.nstr(x, 25) for x in (*q, *wt)]))
 
 
-main()
+if __name__ == "__main__":
+    main()

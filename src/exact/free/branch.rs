@@ -1,5 +1,6 @@
 //! Which side of the separatrix a motion is on, decided exactly, and its axes in order.
 
+use super::power_of_two;
 use crate::math::{Dd, Expansion};
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
@@ -10,8 +11,8 @@ pub struct Branch {
     pub w: [f64; 3],
     /// +1 where the momentum circles the axis of the largest moment, -1 for the smallest.
     pub sigma: f64,
-    /// |G² - 2 E I2| in double-double, exact where it is a small difference.
-    pub e2: Dd,
+    /// √|G² - 2 E I2| in double-double, the difference exact where it is a small one.
+    pub gap: Dd,
     /// Old axes → new axes.
     pub permutation: Quaternion<f64>,
 }
@@ -21,7 +22,9 @@ impl Branch {
         let mut order = [0, 1, 2];
         order.sort_by(|&a, &b| i[a].total_cmp(&i[b]));
         let [min, mid, max] = order;
-        let e2 = separatrix_distance(i, w, order);
+        // ω of the outer axes near 1, by a power of two: near the middle axis their squares vanish.
+        let scale = power_of_two(w[min].abs().max(w[max].abs()));
+        let e2 = separatrix_distance(i, w / scale, order);
         let (order, sigma) = if e2.hi >= 0.0 {
             ([min, mid, max], 1.0)
         } else {
@@ -40,7 +43,7 @@ impl Branch {
             i: order.map(|axis| i[axis]),
             w: w.into(),
             sigma,
-            e2: e2.abs(),
+            gap: e2.abs().sqrt().scaled(scale),
             permutation: UnitQuaternion::from_rotation_matrix(&rotation).into_inner(),
         }
     }

@@ -23,7 +23,7 @@ pub struct Constants {
     /// Ω, the precession about L, 1/s.
     pub omega: Dd,
     /// The time since the motion passed u = 0, s.
-    pub t0: f64,
+    pub t0: Dd,
     sigma: f64,
 }
 
@@ -37,8 +37,8 @@ impl Constants {
         let d1 = c * s1 + b * s2;
         let d3 = a * s2 + c * s3;
         let g2 = s1 + s2 + s3;
-        let gap = c * branch.e2 / Dd::new(i2);
-        let (lambda, s) = agm_and_sum((b * d3).sqrt(), gap.sqrt(), (c * d3).sqrt());
+        let gap = branch.gap * (c / Dd::new(i2)).sqrt();
+        let (lambda, s) = agm_and_sum((b * d3).sqrt(), gap, (c * d3).sqrt());
         let g = g2.sqrt();
         let omega = if lambda.hi == 0.0 {
             g / Dd::new(i2)
@@ -47,7 +47,17 @@ impl Constants {
         };
         let k2 = (a * d1).to_f64() / (b * d3).to_f64();
         let f = Dd::to_f64;
-        let t0 = branch.sigma * m[1].to_f64() * rf(f(c * d3 * s1), f(c * d1 * s3), f(d1 * d3));
+        // Near the separatrix λ t0 is many radians, and an f64 would round them.
+        let since = if k2 > COMPLEMENTARY {
+            rf_of_squares(
+                (c * d3).sqrt() * m[0],
+                (c * d1).sqrt() * m[2],
+                (d1 * d3).sqrt(),
+            )
+        } else {
+            Dd::new(rf(f(c * d3 * s1), f(c * d1 * s3), f(d1 * d3)))
+        };
+        let t0 = m[1] * since * branch.sigma;
         Self {
             a,
             b,
@@ -87,7 +97,7 @@ impl Constants {
             return Series::Separatrix {
                 a0,
                 rate,
-                y0: rate * self.t0,
+                y0: rate * self.t0.to_f64(),
             };
         }
         Series::Complementary {
@@ -97,6 +107,13 @@ impl Constants {
             phase_per: dual * t_a / PI,
         }
     }
+}
+
+/// `R_F(x², y², z²)`, the first duplication taken before a square can underflow.
+fn rf_of_squares(x: Dd, y: Dd, z: Dd) -> Dd {
+    let lambda = x * (y + z) + y * z;
+    let [x, y, z] = [x, y, z].map(|root| root.square() + lambda);
+    rf(x, y, z) * 2.0
 }
 
 /// `lim α`, and the sum S that the precession takes: right sides are the old values.

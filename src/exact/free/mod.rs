@@ -20,6 +20,8 @@
 mod branch;
 mod constants;
 mod series;
+#[cfg(test)]
+mod tests;
 
 use crate::math::Dd;
 use branch::Branch;
@@ -61,7 +63,7 @@ struct Theta {
     lambda_turns: Dd,
     omega_turns: Dd,
     /// Λ t0 / π.
-    offset: f64,
+    offset: Dd,
     series: Series,
 }
 
@@ -79,25 +81,57 @@ impl FreeMotion {
 
     /// The attitude (principal axes → world) at `t` seconds, of either sign.
     pub fn attitude(&self, t: f64) -> Quaternion<f64> {
+        self.attitude_after(t)
+    }
+
+    /// Attitude and angular velocity in principal axes, `ω = I⁻¹ Rᵀ L`.
+    pub fn at(&self, t: f64) -> (Quaternion<f64>, Vector3<f64>) {
+        self.after(t)
+    }
+
+    pub(super) fn attitude_after(&self, t: impl Time) -> Quaternion<f64> {
         match &self.kind {
             Kind::Steady {
                 q0, axis, turns, ..
             } => {
-                let (cos, sin) = whole_turns_off(*turns * t);
+                let (cos, sin) = whole_turns_off(t.times(*turns));
                 q0 * Quaternion::from_parts(cos, axis * sin)
             }
             Kind::Theta(theta) => theta.left * theta.at(t) * theta.right,
         }
     }
 
-    /// Attitude and angular velocity in principal axes, `ω = I⁻¹ Rᵀ L`.
-    pub fn at(&self, t: f64) -> (Quaternion<f64>, Vector3<f64>) {
-        let q = self.attitude(t);
+    pub(super) fn after(&self, t: impl Time) -> (Quaternion<f64>, Vector3<f64>) {
+        let q = self.attitude_after(t);
         let omega = match &self.kind {
             Kind::Steady { omega, .. } => *omega,
             Kind::Theta(_) => turn(q.conjugate(), self.momentum_w).component_div(&self.moments),
         };
         (q, omega)
+    }
+}
+
+/// A time in as many digits as it has.
+pub(super) trait Time: Copy {
+    fn times(self, rate: Dd) -> Dd;
+    fn rough(self) -> f64;
+}
+
+impl Time for f64 {
+    fn times(self, rate: Dd) -> Dd {
+        rate * self
+    }
+    fn rough(self) -> f64 {
+        self
+    }
+}
+
+impl Time for Dd {
+    fn times(self, rate: Dd) -> Dd {
+        rate * self
+    }
+    fn rough(self) -> f64 {
+        self.to_f64()
     }
 }
 
@@ -115,14 +149,18 @@ fn whole_turns_off(turns: Dd) -> (f64, f64) {
     (cos, sin)
 }
 
-/// Components of ω below this part of the largest have squares that underflow beside it.
+/// Components of ω below this part of the largest have squares that underflow beside it, and are
+/// felt at no time: but about a middle axis, which they make the motion leave in the end.
 const VANISHING: f64 = 1e-140;
 
 fn kind(i: Vector3<f64>, q0: Quaternion<f64>, w: Vector3<f64>) -> Kind {
     // Units of its own: moments and rates near 1, exactly, by powers of two.
     let scale_w = power_of_two(w.amax());
     let i = i / power_of_two(i.amax());
-    let w = (w / scale_w).map(|x| if x.abs() < VANISHING { 0.0 } else { x });
+    let mut w = w / scale_w;
+    if !is_middle(i, w.iamax()) {
+        w = w.map(|x| if x.abs() < VANISHING { 0.0 } else { x });
+    }
     // dω/dt = 0: each product (I_j - I_k) ω_j ω_k has a factor that is zero.
     let zero = |j: usize, k: usize| i[j] == i[k] || w[j] == 0.0 || w[k] == 0.0;
     let kind = if zero(1, 2) && zero(2, 0) && zero(0, 1) {
@@ -131,6 +169,11 @@ fn kind(i: Vector3<f64>, q0: Quaternion<f64>, w: Vector3<f64>) -> Kind {
         Kind::Theta(Box::new(Theta::new(i, q0, w)))
     };
     kind.in_time_units_of(scale_w)
+}
+
+/// Whether one moment is below that of `axis` and one above.
+fn is_middle(i: Vector3<f64>, axis: usize) -> bool {
+    i.min() < i[axis] && i[axis] < i.max()
 }
 
 fn power_of_two(x: f64) -> f64 {
@@ -198,7 +241,7 @@ impl Theta {
             sigma: branch.sigma,
             lambda_turns: c.lambda / Dd::PI,
             omega_turns: c.omega / Dd::PI.scaled(4.0),
-            offset: c.lambda.to_f64() * c.t0 / PI,
+            offset: c.lambda * c.t0 / Dd::PI,
             series: c.series(),
         };
         let start = theta.at(0.0) * q_s;
@@ -207,7 +250,7 @@ impl Theta {
     }
 
     /// `q_b(t)`, unit: `e^{iΩt/2} (α, β)` as (w + iz, x + iy).
-    fn at(&self, t: f64) -> Quaternion<f64> {
+    fn at(&self, t: impl Time) -> Quaternion<f64> {
         let (alpha, beta) = match self.series {
             Series::Nome { q, kappa, epsilon } => {
                 let (nu, odd) = self.phase(t);
@@ -225,20 +268,20 @@ impl Theta {
                 (times(alpha, (cos, sin)), times(beta, (cos, sin)))
             }
             Series::Separatrix { a0, rate, y0 } => {
-                complementary_series(f64::INFINITY, a0, rate * t + y0, false)
+                complementary_series(f64::INFINITY, a0, rate * t.rough() + y0, false)
             }
         };
         let square = |(re, im): (f64, f64)| re * re + im * im;
         let norm = 1.0 / (square(alpha) + square(beta)).sqrt();
-        let (cos, sin) = whole_turns_off(self.omega_turns * t);
+        let (cos, sin) = whole_turns_off(t.times(self.omega_turns));
         let turn = (cos * norm, sin * norm);
         let ((w, z), (x, y)) = (times(alpha, turn), times(beta, turn));
         Quaternion::new(w, x, y, z)
     }
 
     /// ν reduced to [-π/2, π/2], and whether an odd number of π was taken off.
-    fn phase(&self, t: f64) -> (f64, bool) {
-        let turns = (self.lambda_turns * t + Dd::new(self.offset)) * self.sigma;
+    fn phase(&self, t: impl Time) -> (f64, bool) {
+        let turns = (t.times(self.lambda_turns) + self.offset) * self.sigma;
         let (part, whole) = turns.fraction();
         (PI * part, libm::fmod(whole, 2.0) != 0.0)
     }
