@@ -15,6 +15,7 @@
 //! Damping: τ = -c I ω makes dL/dt = -c L; with L = e^{-ct} M and ds = e^{-ct} dt, M and q obey the undamped
 //! equations in s.
 
+use super::flight::{Elapsed, Flight};
 use super::{Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Step, Stepper, Work};
 use crate::body::{Inertial, State, StateBlock};
 use crate::effect::Decay;
@@ -54,7 +55,7 @@ impl Method for ClosedForm {
             let turning = Turning::new(interval.load.gyroscopic(), &body, &state.get(lane));
             Path {
                 start: state.get(lane),
-                a_w,
+                flight: Flight::new(&state.get(lane), a_w),
                 turning,
             }
         };
@@ -85,8 +86,7 @@ struct Run {
 #[derive(Clone)]
 struct Path {
     start: State,
-    /// Constant, m/s².
-    a_w: Vector3<f64>,
+    flight: Flight,
     turning: Turning,
 }
 
@@ -97,17 +97,6 @@ enum Turning {
     Euler(FreeMotion),
     /// ω stays: what the world turns the starting attitude by.
     Steady(FreeMotion),
-}
-
-/// Elapsed time as the motion counts it, with damping at some rate.
-#[derive(Clone, Copy)]
-struct Elapsed {
-    /// `e^{-kt}`.
-    factor: f64,
-    /// `(1 - e^{-kt})/k`, s: what a velocity that decays counts.
-    first: f64,
-    /// `(t - (1 - e^{-kt})/k)/k`, s²: what a constant acceleration counts.
-    second: f64,
 }
 
 impl Stepper for Run {
@@ -123,13 +112,8 @@ impl Stepper for Run {
 
     fn state(&self) -> StateBlock {
         let t = self.now - self.from;
-        let (linear, angular) = match &self.decay {
-            None => (Elapsed::undamped(t), Elapsed::undamped(t)),
-            Some(decay) => (
-                Elapsed::damped(t, decay.linear_rate(), decay.linear_factor(t)),
-                Elapsed::damped(t, decay.angular_rate(), decay.angular_factor(t)),
-            ),
-        };
+        let linear = Elapsed::linear(self.decay.as_ref(), t);
+        let angular = Elapsed::angular(self.decay.as_ref(), t);
         let mut block = self.empty;
         for (lane, path) in self.paths.iter().enumerate() {
             block.set(lane, path.at(linear, angular));
@@ -151,11 +135,11 @@ impl Stepper for Run {
 
 impl Path {
     fn at(&self, linear: Elapsed, angular: Elapsed) -> State {
-        let Self { start, a_w, .. } = self;
-        let (q_wp, omega_w) = self.turning.at(angular.first, start);
+        let (x_w, v_w) = self.flight.at(linear);
+        let (q_wp, omega_w) = self.turning.at(angular.first, &self.start);
         State {
-            x_w: start.x_w + start.v_w * linear.first + a_w * linear.second,
-            v_w: start.v_w * linear.factor + a_w * linear.first,
+            x_w,
+            v_w,
             q_wp,
             omega_w: omega_w * angular.factor,
         }
@@ -185,99 +169,9 @@ impl Turning {
     }
 }
 
-impl Elapsed {
-    fn undamped(t: f64) -> Self {
-        Self {
-            factor: 1.0,
-            first: t,
-            second: 0.5 * t * t,
-        }
-    }
-
-    fn damped(t: f64, rate: f64, factor: f64) -> Self {
-        if rate == 0.0 {
-            return Self::undamped(t);
-        }
-        let z = -rate * t;
-        Self {
-            factor,
-            first: -libm::expm1(z) / rate,
-            second: t * t * phi_2(z),
-        }
-    }
-}
-
-/// `(e^z - 1 - z)/z²` for z ≤ 0, without the cancellation near 0.
-fn phi_2(z: f64) -> f64 {
-    if z < -1.0 {
-        return (libm::expm1(z) - z) / (z * z);
-    }
-    // 1/2 + z/3! + z²/4! + ..., the last term 1/20!.
-    (3..=20)
-        .rev()
-        .fold(1.0, |sum, n| 1.0 + sum * z / f64::from(n))
-        / 2.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn phi_2_has_all_its_digits() {
-        // mpmath, 40 digits, at the f64 nearest to each z.
-        for (z, exact) in [
-            (0.0, 0.5),
-            (-1e-9, 0.499_999_999_833_333_3),
-            (-0.3, 0.453_535_785_352_420_74),
-            (-1.0, 0.367_879_441_171_442_32),
-            (-1.000_000_1, 0.367_879_430_807_610_2),
-            (-3.7, 0.199_030_206_462_406_08),
-            (-40.0, 0.024_375),
-            (-1e5, 9.999_9e-6),
-        ] {
-            // A division and a dozen roundings that each count less than the one before; below -1 a
-            // difference that loses less than a bit.
-            assert!((phi_2(z) / exact - 1.0).abs() < 4e-16, "{z}");
-        }
-    }
-
-    #[test]
-    fn a_body_thrown_through_a_linear_drag() {
-        // mpmath, 40 digits: k = 0.7, t = 2.5, and v' = a - k v.
-        let path = Path {
-            start: State {
-                x_w: Vector3::new(1.0, -2.0, 0.5),
-                v_w: Vector3::new(3.0, 0.25, -1.0),
-                q_wp: Quaternion::identity(),
-                omega_w: Vector3::zeros(),
-            },
-            a_w: Vector3::new(0.0, -9.8125, 0.125),
-            turning: Turning::Steady(FreeMotion::new(
-                Vector3::repeat(1.0),
-                Quaternion::identity(),
-                Vector3::zeros(),
-            )),
-        };
-        let (k, t) = (0.7_f64, 2.5_f64);
-        let state = path.at(
-            Elapsed::damped(t, k, libm::exp(-k * t)),
-            Elapsed::undamped(t),
-        );
-        let x = Vector3::new(
-            4.540_968_813_783_807,
-            -20.203_963_796_349_634,
-            -0.444_666_319_700_781_2,
-        );
-        let v = Vector3::new(
-            0.521_321_830_351_335_4,
-            -11.538_475_342_555_257,
-            -0.026_233_576_209_453_2,
-        );
-        // Three roundings of numbers up to 20, and k t's.
-        assert!((state.x_w - x).amax() < 1e-14, "{}", state.x_w);
-        assert!((state.v_w - v).amax() < 1e-14, "{}", state.v_w);
-    }
 
     #[test]
     fn in_the_tutorials_model_a_long_rotation_keeps_its_phase() {
@@ -293,10 +187,10 @@ mod tests {
         let body = crate::body::InertialBlock::default().get(0);
         let path = Path {
             start,
-            a_w: Vector3::zeros(),
+            flight: Flight::new(&start, Vector3::zeros()),
             turning: Turning::new(false, &body, &start),
         };
-        let end = path.at(Elapsed::undamped(t), Elapsed::undamped(t));
+        let end = path.at(Elapsed::linear(None, t), Elapsed::angular(None, t));
         let (sin, cos) = libm::sincos(0.5 * omega * t);
         let exact = Quaternion::new(cos, 0.0, sin, 0.0) * q0;
         // Sine, cosine and a product, each rounded.

@@ -54,6 +54,8 @@ pub enum Accepts {
 pub enum Damping {
     /// Velocities by themselves decay exactly as `e^{-ct}`; this is how.
     Exact(&'static str),
+    /// To the method's tolerance; this is how.
+    Within(&'static str),
     /// As the engine does it.
     Engine(&'static str),
     /// Not at all: such loads are refused.
@@ -89,7 +91,7 @@ impl Accepts {
 impl Damping {
     pub fn describe(self) -> &'static str {
         match self {
-            Self::Exact(how) | Self::Engine(how) => how,
+            Self::Exact(how) | Self::Within(how) | Self::Engine(how) => how,
             Self::Refused => "refused",
         }
     }

@@ -14,6 +14,7 @@ mod closed_form;
 mod common;
 mod dop853;
 mod explicit_euler;
+mod flight;
 mod implicit_gyroscopic;
 mod info;
 mod lie_midpoint;
@@ -25,6 +26,7 @@ mod rk4;
 mod rkmk4;
 mod scalar;
 mod semi_implicit;
+mod taylor;
 
 pub use info::{Accepts, Cost, Damping, Kind, MethodInfo, Refusal};
 pub use pieces::Pieces;
@@ -126,6 +128,7 @@ pub const METHODS: &[&dyn Method] = &[
     // General solvers.
     &Stepped(rk4::Rk4),
     &dop853::Dop853,
+    &taylor::Taylor,
     // The exact motion.
     &closed_form::ClosedForm,
 ];
