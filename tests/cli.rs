@@ -54,6 +54,20 @@ fn wrong_scenes_are_told_what_is_wrong_all_at_once() {
     }
 }
 
+/// `UPDATE_GOLDEN=1 cargo test --test cli` writes it anew.
+#[test]
+fn the_page_of_methods_is_what_the_table_says() {
+    let output = torquescope(&root())
+        .args(["methods", "--markdown"])
+        .output();
+    let said = text(&output.unwrap().stdout);
+    let page = root().join("docs/methods.md");
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(&page, &said).unwrap();
+    }
+    assert_eq!(std::fs::read_to_string(&page).unwrap_or_default(), said);
+}
+
 #[test]
 fn a_scene_that_does_not_exist() {
     let output = torquescope(&root())

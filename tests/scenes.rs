@@ -56,7 +56,7 @@ fn run(scene: &Scene) -> (Vec<Subject>, Outcome, Memory) {
     let (outcome, done) = match scene.stepping {
         Stepping::Method { .. } => simulation.run(&mut memory),
         Stepping::Accuracy(_) => {
-            let plan = Plan::of(&scene).unwrap_or_else(|error| panic!("{error}"));
+            let plan = Plan::of(scene).unwrap_or_else(|error| panic!("{error}"));
             simulation.run_by(&mut plan.chooser(), &mut memory)
         }
     };

@@ -4,7 +4,7 @@ use super::print;
 use crate::effect::{Argument, EFFECTS};
 use crate::integrator::METHODS;
 use crate::mass::solids::SOLIDS;
-use crate::trace::STREAMS;
+use crate::trace::{STREAMS, short};
 
 /// Options of every list.
 #[derive(clap::Args)]
@@ -30,28 +30,105 @@ fn list(arguments: &Arguments, header: &[&str], rows: Vec<Vec<String>>) -> anyho
     print::json(&objects)
 }
 
-pub fn methods(arguments: &Arguments) -> anyhow::Result<()> {
+/// Options of the list of methods.
+#[derive(clap::Args)]
+pub struct MethodArguments {
+    #[command(flatten)]
+    list: Arguments,
+    /// Print the page docs/methods.md.
+    #[arg(long, conflicts_with = "json")]
+    markdown: bool,
+}
+
+pub fn methods(arguments: &MethodArguments) -> anyhow::Result<()> {
+    if arguments.markdown {
+        return print::out(methods_page().trim_end());
+    }
     let rows = METHODS.iter().map(|method| {
         let info = method.info();
         [
             info.name.to_owned(),
+            info.engines.join(", "),
             info.order.to_string(),
-            info.preserves.to_owned(),
+            info.kind.describe().to_owned(),
             info.accepts.describe().to_owned(),
+            info.preserves.to_owned(),
             info.damping.describe().to_owned(),
+            short(info.cost.weight),
             info.citation.to_owned(),
         ]
         .to_vec()
     });
     let header = [
         "method",
+        "also called",
         "order",
-        "preserves",
+        "steps",
         "torques",
+        "preserves",
         "damping",
+        "cost",
         "citation",
     ];
-    list(arguments, &header, rows.collect())
+    if arguments.list.json {
+        return list(&arguments.list, &header, rows.collect());
+    }
+    // Citations and damping would make the table too wide to read: they stand in the page.
+    let narrow = rows.map(|row| [0, 2, 3, 4, 5, 7].map(|k| row[k].clone()).to_vec());
+    let header = [0, 2, 3, 4, 5, 7].map(|k| header[k]);
+    list(&arguments.list, &header, narrow.collect())?;
+    print::out(
+        "cost: of a step of one free body, in steps of rk4. Damping, other names and citations: \
+         docs/methods.md, or --json. What they cost on your scene: torquescope cost SCENE",
+    )
+}
+
+/// docs/methods.md.
+fn methods_page() -> String {
+    let mut text = "# Methods\n\n\
+        Written by `torquescope methods --markdown` from the table `METHODS`; a test holds it to that.\n\n\
+        A scene names one (`[stepping] method = \"rk4\"`), or states `accuracy = 1e-9` (rad) and lets \
+        the program choose. `torquescope cost SCENE` shows what each costs on a scene of yours.\n\n\
+        Orders are those of the attitude at a fixed time, for smooth torques of the kinds accepted; a \
+        test measures each on a free, a damped and a driven body. A torque that would cost a method \
+        its order is refused. Nothing an event does falls inside a step. *Cost* is the time of a step \
+        of one free body in steps of rk4, as the benchmark measured it: the program's choice counts \
+        by it, so that a plan does not depend on a clock.\n\n\
+        | method | order | steps | torques | preserves | reversible | evaluations a step | cost |\n\
+        |---|--:|---|---|---|---|--:|--:|\n"
+        .to_owned();
+    for method in METHODS {
+        let info = method.info();
+        text += &format!(
+            "| {} | {} | {} | {} | {} | {} | {} | {} |\n",
+            info.name,
+            info.order,
+            info.kind.describe(),
+            info.accepts.describe(),
+            info.preserves,
+            if info.reversible { "yes" } else { "no" },
+            match info.cost.evaluations {
+                0 => "varies".to_owned(),
+                n => n.to_string(),
+            },
+            short(info.cost.weight)
+        );
+    }
+    text += "\n## Damping, other names, sources\n\n";
+    for method in METHODS {
+        let info = method.info();
+        let called = match info.engines {
+            [] => String::new(),
+            names => format!(" Also called {}.", names.join(", ")),
+        };
+        text += &format!(
+            "- **{}**: damping {}.{called} {}.\n",
+            info.name,
+            info.damping.describe(),
+            info.citation
+        );
+    }
+    text
 }
 
 pub fn effects(arguments: &Arguments) -> anyhow::Result<()> {

@@ -42,7 +42,7 @@ enum Verb {
     Check(check::Arguments),
     Scenes(scenes::Arguments),
     /// List the integration methods: order, what they preserve, citation.
-    Methods(lists::Arguments),
+    Methods(lists::MethodArguments),
     /// List the effects that a scene's [effects] can name.
     Effects(lists::Arguments),
     /// List the streams that a scene's [record] can choose, with unit and frame.

@@ -77,6 +77,16 @@ pub struct Cost {
 #[error("{0}")]
 pub struct Refusal(pub String);
 
+impl Kind {
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Fixed => "as given",
+            Self::Adaptive => "its own, by tolerance",
+            Self::Closed => "none: any time at once",
+        }
+    }
+}
+
 impl Accepts {
     pub fn describe(self) -> &'static str {
         match self {
