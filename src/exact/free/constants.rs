@@ -1,7 +1,7 @@
 //! The constants of a motion: moduli, rates and phases, from one AGM loop in double-double.
 
 use super::branch::Branch;
-use super::series::Series;
+use super::series::{Complementary, Nome, Series};
 use crate::math::carlson::rf;
 use crate::math::{Dd, agm};
 use std::f64::consts::PI;
@@ -82,11 +82,7 @@ impl Constants {
             let t_w = rf(f(b * self.d1), f(c * self.d1), f(b * c * g2));
             let kappa = libm::exp(-2.0 * lambda * t_w);
             let epsilon = libm::exp(-2.0 * lambda * t_a);
-            return Series::Nome {
-                q: kappa * epsilon,
-                kappa,
-                epsilon,
-            };
+            return Series::Nome(Nome::new(kappa, epsilon));
         }
         // Λ': the AGM of √(B D3) and √(A D1).
         let (start, end) = ((b * self.d3).sqrt(), (self.a * self.d1).sqrt());
@@ -95,16 +91,15 @@ impl Constants {
         if lambda == 0.0 {
             let rate = 0.5 * self.sigma * dual;
             return Series::Separatrix {
-                a0,
+                terms: Complementary::new(f64::INFINITY, a0),
                 rate,
                 y0: rate * self.t0.to_f64(),
             };
         }
         Series::Complementary {
-            exponent: 0.5 * PI * dual / lambda,
-            a0,
+            terms: Complementary::new(0.5 * PI * dual / lambda, a0),
             y_per: 0.5 * dual / lambda,
-            phase_per: dual * t_a / PI,
+            turns_per: 0.5 * dual * t_a / (PI * PI),
         }
     }
 }

@@ -24,10 +24,11 @@ mod series;
 mod tests;
 
 use crate::math::Dd;
+use crate::math::dd::nearest;
 use branch::Branch;
 use constants::Constants;
 use nalgebra::{Quaternion, Vector3};
-use series::{Series, complementary_series, nome_series, times};
+use series::{Series, times};
 use std::f64::consts::PI;
 
 /// A torque-free motion, set up once and evaluated at any time.
@@ -57,12 +58,10 @@ struct Theta {
     /// Left and right constants: `q(t) = left · q_b(t) · right`.
     left: Quaternion<f64>,
     right: Quaternion<f64>,
-    /// ±1: which branch.
-    sigma: f64,
-    /// Λ/π and Ω/4π, 1/s.
+    /// σΛ/π and Ω/4π, 1/s; σ = ±1 is the branch.
     lambda_turns: Dd,
     omega_turns: Dd,
-    /// Λ t0 / π.
+    /// σΛ t0 / π.
     offset: Dd,
     series: Series,
 }
@@ -235,13 +234,13 @@ impl Theta {
         let branch = Branch::choose(i, w);
         let c = Constants::new(&branch);
         let q_s = branch.permutation;
+        let rate = c.lambda / Dd::PI * branch.sigma;
         let mut theta = Self {
             left: Quaternion::identity(),
             right: q_s,
-            sigma: branch.sigma,
-            lambda_turns: c.lambda / Dd::PI,
+            lambda_turns: rate,
             omega_turns: c.omega / Dd::PI.scaled(4.0),
-            offset: c.lambda * c.t0 / Dd::PI,
+            offset: rate * c.t0,
             series: c.series(),
         };
         let start = theta.at(0.0) * q_s;
@@ -251,29 +250,27 @@ impl Theta {
 
     /// `q_b(t)`, unit: `e^{iΩt/2} (α, β)` as (w + iz, x + iy).
     fn at(&self, t: impl Time) -> Quaternion<f64> {
-        let (alpha, beta) = match self.series {
-            Series::Nome { q, kappa, epsilon } => {
+        let (mut turns, _) = t.times(self.omega_turns).fraction();
+        let (alpha, beta) = match &self.series {
+            Series::Nome(series) => {
                 let (nu, odd) = self.phase(t);
-                nome_series(q, kappa, epsilon, nu, odd)
+                series.at(nu, odd)
             }
             Series::Complementary {
-                exponent,
-                a0,
+                terms,
                 y_per,
-                phase_per,
+                turns_per,
             } => {
                 let (nu, odd) = self.phase(t);
-                let (alpha, beta) = complementary_series(exponent, a0, y_per * nu, odd);
-                let (sin, cos) = libm::sincos(nu * phase_per);
-                (times(alpha, (cos, sin)), times(beta, (cos, sin)))
+                turns += nu * turns_per;
+                turns -= nearest(turns);
+                terms.at(y_per * nu, odd)
             }
-            Series::Separatrix { a0, rate, y0 } => {
-                complementary_series(f64::INFINITY, a0, rate * t.rough() + y0, false)
-            }
+            Series::Separatrix { terms, rate, y0 } => terms.at(rate * t.rough() + y0, false),
         };
         let square = |(re, im): (f64, f64)| re * re + im * im;
         let norm = 1.0 / (square(alpha) + square(beta)).sqrt();
-        let (cos, sin) = whole_turns_off(t.times(self.omega_turns));
+        let (sin, cos) = libm::sincos(2.0 * PI * turns);
         let turn = (cos * norm, sin * norm);
         let ((w, z), (x, y)) = (times(alpha, turn), times(beta, turn));
         Quaternion::new(w, x, y, z)
@@ -281,8 +278,8 @@ impl Theta {
 
     /// ν reduced to [-π/2, π/2], and whether an odd number of π was taken off.
     fn phase(&self, t: impl Time) -> (f64, bool) {
-        let turns = (t.times(self.lambda_turns) + self.offset) * self.sigma;
-        let (part, whole) = turns.fraction();
-        (PI * part, libm::fmod(whole, 2.0) != 0.0)
+        let (part, whole) = (t.times(self.lambda_turns) + self.offset).fraction();
+        let half = 0.5 * whole;
+        (PI * part, half != nearest(half))
     }
 }
