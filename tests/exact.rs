@@ -222,6 +222,53 @@ fn a_top_without_weight_is_a_free_body_and_one_without_spin_a_pendulum() {
     }
 }
 
+/// a = b and energy of standing upright: I1 = M = 1, b = 1, β = 2, v = 1 - u3 obeys
+/// `v̇² = v² (3 - 2v)`, `v = 3/2 sech²(√3/2 t + c)`. All the numbers are exact.
+#[test]
+fn a_top_on_its_separatrix_rises_and_stands() {
+    let q0 = Quaternion::new(1.0, 1.0, 0.0, 0.0);
+    let momentum = |q: Quaternion<f64>, w: Vector3<f64>| {
+        let l = Quaternion::from_imag(Vector3::new(w.x, w.y, 0.5 * w.z));
+        (q * l * q.conjugate()).imag()
+    };
+    for (w1, c) in [(-1.0, 1.0), (1.0, -1.0)] {
+        let top = LagrangeTop::new(1.0, 0.5, 1.0, q0, Vector3::new(w1, 1.0, 2.0));
+        // At t = 0 v = 1: cosh² c = 3/2; rising where u̇3 = -ω1 > 0.
+        let c = c * (1.5_f64.sqrt() + 0.5_f64.sqrt()).ln();
+        for t in [0.0, 0.7, -0.7, 3.0, -5.0, 20.0, 300.0, 1e3, -1e6] {
+            let (q, w) = top.at(t);
+            let v = 2.0 * (q.i * q.i + q.j * q.j);
+            let exact = 1.5 / (0.75_f64.sqrt() * t + c).cosh().powi(2);
+            assert!((v - exact).abs() < 4e-15, "{t}: {v} {exact}");
+            // a and the energy, 2 E/I1 = β.
+            let energy = w.x * w.x + w.y * w.y + 2.0 * (1.0 - v);
+            assert!((momentum(q, w).z - 1.0).abs() < 4e-15, "{t}");
+            assert!((energy - 2.0).abs() < 8e-15, "{t}: {energy}");
+            // Its halves turn as they should: dq/dt = ½ q ω by a central difference, good to h².
+            let h = 1e-4 * (1.0 + 1e-5 * t.abs());
+            let rate = (top.attitude(t + h) - top.attitude(t - h)) / (2.0 * h);
+            let expected = q * Quaternion::from_imag(w) * 0.5;
+            assert!(
+                (rate - expected).norm() < 1e-7 * (1.0 + 1e-4 * t.abs()),
+                "{t}"
+            );
+        }
+    }
+    // Without spin it is the pendulum that just reaches the top.
+    let hanging = Quaternion::new(0.0, 1.0, 0.0, 0.0);
+    let top = LagrangeTop::new(1.0, 0.5, 1.0, hanging, Vector3::x() * 2.0);
+    let pendulum = Pendulum::new(1.0, 1.0, 0.0, 2.0);
+    for t in [0.3, -4.0, 15.0, 500.0, -1e5] {
+        let exact = pendulum.attitude(Vector3::x_axis(), t) * hanging;
+        let (q, w) = top.at(t);
+        assert!(angle(q, exact) < 4e-15, "{t}: {q} {exact}");
+        assert!(
+            (w.x - pendulum.at(t).1).abs() < 4e-15 && w.y.abs() < 4e-15,
+            "{t}: {w}"
+        );
+    }
+}
+
 #[test]
 fn kovalevskayas_invariant_is_one() {
     let mut count = 0;
