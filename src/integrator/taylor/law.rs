@@ -40,8 +40,8 @@ pub struct Turning {
     pub constant: [f64; 4],
     /// Torque of each direction: columns, for the components of u_d.
     pub maps: [[[f64; 4]; 3]; 3],
-    /// c, 1/s.
-    pub drag: f64,
+    /// `c I`, N·m·s.
+    pub drag: [f64; 4],
 }
 
 /// How the reference point moves.
@@ -133,6 +133,7 @@ impl Turning {
             true => Dd::ZERO,
             false => Dd::ONE / Dd::new(i),
         });
+        let drag = load.decay().map_or(0.0, |decay| decay.angular_rate());
         let mut maps = [[[0.0; 4]; 3]; 3];
         for (map, (_, matrix)) in maps.iter_mut().zip(directions) {
             for (column, of) in map.iter_mut().zip(matrix.column_iter()) {
@@ -145,7 +146,7 @@ impl Turning {
             rest: padded(inverses.map(|inverse| inverse.lo)),
             constant: padded(constant),
             maps,
-            drag: load.decay().map_or(0.0, |decay| decay.angular_rate()),
+            drag: padded(i * drag),
         }
     }
 }

@@ -13,7 +13,8 @@
 //!
 //! A reference point that is under constant acceleration, damped or not, is not integrated at all
 //! ([`Flight`]). Coefficients are in powers of s over a unit of time near the step, a power of two, so that
-//! fast and slow bodies neither over- nor underflow.
+//! fast and slow bodies neither over- nor underflow. What the last addition to q and ω rounded away is
+//! added with the next (Kahan): the rounding of a step is then that of its change alone.
 //!
 //! Jorba & Zou, A software package for the numerical integration of ODEs by means of high-order Taylor
 //! methods, Experimental Mathematics 14 (2005): order and step; Biscani & Izzo, MNRAS 504 (2021), section 2:
@@ -27,10 +28,14 @@ use super::flight::Elapsed;
 use super::own_steps::{Run, Walk};
 use super::{Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Stepper, Work};
 use crate::body::{State, StateBlock};
+use crate::math::dd::two_sum;
 use law::{Law, Travel, padded};
 use multiversion::multiversion;
 use nalgebra::{Quaternion, Vector3};
-use recurrence::{Levers, NoLevers, Spin, expand};
+use recurrence::{
+    Four, Levers, NoLevers, OMEGA, Order, Q, expand, rows, set_attitude, set_direction, set_spin,
+};
+use std::f64::consts::LOG2_E;
 use std::sync::Arc;
 use travel::Journey;
 
@@ -87,13 +92,16 @@ struct Body {
     reached: f64,
     /// Coefficients are in powers of time over this, s.
     unit: f64,
-    /// Of the step from `from`: q and u_d in rows of four, `4 + 4 directions` numbers an order.
-    rows: Vec<f64>,
-    spins: Vec<Spin>,
+    /// Of the step from `from`: the rows of each order.
+    series: Vec<Four>,
     journey: Option<Box<Journey>>,
     /// At `reached`; |q| = 1.
     q: [f64; 4],
     omega: [f64; 4],
+    /// What the last additions to q and ω rounded away: with it, steps are added as if to twice the
+    /// digits (Kahan 1965).
+    q_rest: [f64; 4],
+    omega_rest: [f64; 4],
     work: Work,
 }
 
@@ -107,9 +115,9 @@ impl Body {
         let omega_p = start.to_principal(start.omega_w);
         let turn = power_of_two(omega_p.amax());
         let width = match law.directions.len() {
-            0 => 4,
-            1 => 8,
-            _ => 16,
+            0 => rows(0),
+            1 => rows(1),
+            _ => rows(3),
         };
         Self {
             law: Arc::new(law),
@@ -118,33 +126,36 @@ impl Body {
             from: t,
             reached: t,
             unit: 1.0 / turn,
-            rows: vec![0.0; width * (order + 1)],
-            spins: vec![Spin::default(); order + 1],
+            series: vec![Four::default(); width * (order + 1)],
             journey,
             q: start.q_wp.coords.into(),
             omega: padded(omega_p),
+            q_rest: [0.0; 4],
+            omega_rest: [0.0; 4],
             work: Work::default(),
         }
     }
 
-    /// Numbers an order in `rows`.
+    /// Rows an order has.
     fn width(&self) -> usize {
-        self.rows.len() / (self.order + 1)
+        self.series.len() / (self.order + 1)
     }
 
     /// Expands from the end of the last step.
     fn expand(&mut self) {
+        const NONE: usize = rows(0);
+        const ONE: usize = rows(1);
+        const AXES: usize = rows(3);
         self.work.evaluations += 1;
-        let width = self.width();
-        let (unit, start) = (self.unit, (self.q, self.omega));
-        let (law, rows, spins) = (&self.law, &mut self.rows[..], &mut self.spins[..]);
+        let (width, unit, start) = (self.width(), self.unit, (self.q, self.omega));
+        let (law, series) = (&self.law, &mut self.series[..]);
         match (width, &mut self.journey) {
-            (4, _) => expand_from::<4, _>(start, law, unit, rows, spins, &mut NoLevers),
-            (8, _) => expand_from::<8, _>(start, law, unit, rows, spins, &mut NoLevers),
-            (_, None) => expand_from::<16, _>(start, law, unit, rows, spins, &mut NoLevers),
+            (NONE, _) => expand_from::<NONE, _>(start, law, unit, series, &mut NoLevers),
+            (ONE, _) => expand_from::<ONE, _>(start, law, unit, series, &mut NoLevers),
+            (_, None) => expand_from::<AXES, _>(start, law, unit, series, &mut NoLevers),
             (_, Some(journey)) => {
                 journey.set_out(unit);
-                expand_from::<16, _>(start, law, unit, rows, spins, journey.as_mut());
+                expand_from::<AXES, _>(start, law, unit, series, journey.as_mut());
             }
         }
     }
@@ -152,8 +163,8 @@ impl Body {
     /// How far the polynomial is good for, s.
     fn length(&self) -> f64 {
         let width = self.width();
-        let attitude = |k: usize| largest(&self.rows[width * k..]);
-        let spin = |k: usize| largest(&self.spins[k].omega);
+        let attitude = |k: usize| largest(&self.series[width * k + Q]);
+        let spin = |k: usize| largest(&self.series[width * k + OMEGA]);
         let speed = |k: usize| {
             self.journey
                 .as_ref()
@@ -162,21 +173,39 @@ impl Body {
         // What ω and v are over a time such as a step takes, so that neither counts as zero.
         let lowest = |of: &dyn Fn(usize) -> f64| of(0).max(of(1)).max(of(2));
         let (spin_scale, speed_scale) = (lowest(&spin), lowest(&speed));
+        // log2 of the radius at which term k would be 1.
         let radius = |k: usize| {
             let relative = |size: f64, scale: f64| if size == 0.0 { 0.0 } else { size / scale };
-            let size = (attitude(k))
-                .max(relative(spin(k), spin_scale))
-                .max(relative(speed(k), speed_scale));
-            -libm::log(size) / k as f64
+            let spin = relative(spin(k), spin_scale);
+            let speed = relative(speed(k), speed_scale);
+            -rough_log2(larger(attitude(k), larger(spin, speed))) / k as f64
         };
         let n = self.order;
-        let safety = 2.0 + 0.7 / (n - 1) as f64;
-        self.unit * libm::exp(radius(n).min(radius(n - 1)) - safety)
+        let safety = (2.0 + 0.7 / (n - 1) as f64) * LOG2_E;
+        self.unit * libm::exp2(radius(n).min(radius(n - 1)) - safety)
+    }
+
+    /// Takes q and ω at `s` units from the start for the end of the step.
+    fn arrive(&mut self, s: f64) {
+        let (turn, spin) = change(self.width(), &self.series, s);
+        // Half of what |q|² lacks of 1 brings q to unit length but for the square of that.
+        let square: f64 = (self.q.iter().zip(turn))
+            .map(|(q, turn)| (q + turn) * (q + turn))
+            .sum();
+        let lacks = 0.5 * (1.0 - square);
+        for lane in 0..4 {
+            let turn = turn[lane] + (self.q[lane] + turn[lane]) * lacks + self.q_rest[lane];
+            (self.q[lane], self.q_rest[lane]) = two_sum(self.q[lane], turn);
+            let spin = spin[lane] + self.omega_rest[lane];
+            (self.omega[lane], self.omega_rest[lane]) = two_sum(self.omega[lane], spin);
+        }
     }
 
     /// q, not quite of unit length, and ω, in principal axes, `s` units from the start of the step.
     fn turned(&self, s: f64) -> ([f64; 4], [f64; 4]) {
-        value(self.width(), &self.rows, &self.spins, s)
+        let (turn, spin) = change(self.width(), &self.series, s);
+        let sum = |a: &Four, b: [f64; 4]| std::array::from_fn(|lane| a.0[lane] + b[lane]);
+        (sum(&self.series[Q], turn), sum(&self.series[OMEGA], spin))
     }
 
     fn state(
@@ -234,8 +263,7 @@ impl Walk for Body {
         self.from = self.reached;
         self.reached = to;
         let s = (to - self.from) / self.unit;
-        let (q, omega) = self.turned(s);
-        (self.q, self.omega) = (unit_length(q), omega);
+        self.arrive(s);
         if let Some(journey) = &mut self.journey {
             journey.arrive(s);
         }
@@ -256,25 +284,22 @@ impl Walk for Body {
     }
 }
 
-/// Fills the rows of order 0 and from them all others.
-fn expand_from<const W: usize, L: Levers<W>>(
+/// Fills order 0 and from it all others.
+fn expand_from<const ROWS: usize, L: Levers<ROWS>>(
     (q, omega): ([f64; 4], [f64; 4]),
     law: &Law,
     unit: f64,
-    rows: &mut [f64],
-    spins: &mut [Spin],
+    series: &mut [Four],
     levers: &mut L,
 ) {
-    let (rows, _) = rows.as_chunks_mut::<W>();
-    let order = rows.len() - 1;
-    rows[0][..4].copy_from_slice(&q);
+    let (orders, _): (&mut [Order<ROWS>], _) = series.as_chunks_mut();
+    set_attitude(&mut orders[0], q);
+    set_spin(&mut orders[0], omega);
     let q = Quaternion::from(q);
     for (d, direction_w) in law.directions.iter().enumerate() {
-        let u = rotate_back(q, *direction_w);
-        rows[0][4 * (d + 1)..4 * (d + 2)].copy_from_slice(&padded(u));
+        set_direction(&mut orders[0], d, padded(rotate_back(q, *direction_w)));
     }
-    spins[0] = Spin::new(omega);
-    expand(&law.turning, unit, order, rows, spins, levers);
+    expand(&law.turning, unit, orders, levers);
 }
 
 /// `Rᵀ v`.
@@ -283,35 +308,36 @@ fn rotate_back(q: Quaternion<f64>, v: Vector3<f64>) -> Vector3<f64> {
     v + t * q.w + t.cross(&q.imag())
 }
 
-/// The sum of the series of q and ω at `s`: even and odd powers apart, so that neither waits for the
-/// other, and the start added last, whose rounding is then the only one that counts.
+/// What q and ω change by until `s`: the sum of their series but for order 0, even and odd powers apart,
+/// so that neither waits for the other.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn value(width: usize, rows: &[f64], spins: &[Spin], s: f64) -> ([f64; 4], [f64; 4]) {
+fn change(width: usize, series: &[Four], s: f64) -> ([f64; 4], [f64; 4]) {
     let square = s * s;
     let (mut later, mut sooner) = ([0.0; 8], [0.0; 8]);
-    for (row, spin) in rows.chunks_exact(width).zip(spins).skip(1).rev() {
+    for order in series[width..].chunks_exact(width).rev() {
         let mut next = [0.0; 8];
         for lane in 0..4 {
-            next[lane] = row[lane] + later[lane] * square;
-            next[lane + 4] = spin.omega[lane] + later[lane + 4] * square;
+            next[lane] = order[Q].0[lane] + later[lane] * square;
+            next[lane + 4] = order[OMEGA].0[lane] + later[lane + 4] * square;
         }
         (later, sooner) = (sooner, next);
     }
     let (mut q, mut omega) = ([0.0; 4], [0.0; 4]);
     for lane in 0..4 {
-        q[lane] = rows[lane] + (sooner[lane] * s + later[lane] * square);
-        omega[lane] = spins[0].omega[lane] + (sooner[lane + 4] * s + later[lane + 4] * square);
+        q[lane] = sooner[lane] * s + later[lane] * square;
+        omega[lane] = sooner[lane + 4] * s + later[lane + 4] * square;
     }
     (q, omega)
 }
 
-/// The largest of the first four.
-fn largest(row: &[f64]) -> f64 {
-    row.iter().take(4).fold(0.0, |most, c| {
-        let size = c.abs();
-        // Not f64::max, which would hide what is not a number.
-        if most > size { most } else { size }
-    })
+/// The largest in size.
+fn largest(row: &Four) -> f64 {
+    row.0.iter().fold(0.0, |most, c| larger(most, c.abs()))
+}
+
+/// Unlike `f64::max`, not a number where either is none.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
 }
 
 fn unit_length(q: [f64; 4]) -> [f64; 4] {
@@ -330,6 +356,15 @@ fn order(tolerance: f64) -> usize {
         4
     } else {
         20
+    }
+}
+
+/// log2 within 0.09: exponent and mantissa as one number. A k-th of that is no matter for a step.
+fn rough_log2(x: f64) -> f64 {
+    if x.is_finite() {
+        x.to_bits() as f64 / (1_u64 << 52) as f64 - 1023.0
+    } else {
+        f64::NAN
     }
 }
 

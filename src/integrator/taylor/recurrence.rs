@@ -5,9 +5,14 @@
 //! (x y)_k = Σ_{j=0..k} x_j y_{k-j}     (y')_k = (k + 1) y_{k+1}
 //! ```
 //!
-//! Rows of four numbers: q = (x, y, z, w) and u_d = (x, y, z, 0) under the same product, for q (ω, 0) has
-//! q × ω for its vector part where w = 0. Each row is convolved with the three components of ω, which gives
-//! every product that both need; which of them are added is settled once an order.
+//! All products are of rows of four, lane by lane, so that no lane ever waits for another; for that each
+//! coefficient is kept in the arrangements in which it is a factor:
+//!
+//! ```text
+//! q' = ½ ((w, w, w, -x) (p, q, r, p) + (y, z, x, -y) (r, p, q, q) - (z, x, y, z) (q, r, p, r))
+//! u' =                                 (y, z, x)     (r, p, q)    - (z, x, y)    (q, r, p)
+//! ω_j ω_k =                                          (r, p, q)                   (q, r, p)
+//! ```
 //!
 //! The terms with the newest coefficients come last: all others can be summed before those are known.
 
@@ -28,152 +33,194 @@ pub const INVERSE: [f64; HIGHEST + 1] = {
     inverse
 };
 
-/// A coefficient of ω, and turned round twice: the two factors of `ω_j ω_k`.
+/// Four numbers that go through arithmetic together.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(32))]
-pub struct Spin {
-    pub omega: [f64; 4],
-    ahead: [f64; 4],
-    behind: [f64; 4],
+pub struct Four(pub [f64; 4]);
+
+/// The rows of an order: q as (x, y, z, w) and as arranged above, ω as (p, q, r, 0) and likewise, then
+/// u as (x, y, z, 0) and likewise for each direction.
+pub const Q: usize = 0;
+const Q_W: usize = 1;
+const Q_AHEAD: usize = 2;
+const Q_BEHIND: usize = 3;
+pub const OMEGA: usize = 4;
+const PLAIN: usize = 5;
+const AHEAD: usize = 6;
+const BEHIND: usize = 7;
+const DIRECTIONS: usize = 8;
+/// Of a direction, from its first on.
+const U_AHEAD: usize = 1;
+const U_BEHIND: usize = 2;
+const ROWS_OF_U: usize = 3;
+
+/// Rows an order has with so many directions.
+pub const fn rows(directions: usize) -> usize {
+    DIRECTIONS + ROWS_OF_U * directions
 }
 
-impl Spin {
-    #[inline(always)]
-    pub fn new(omega: [f64; 4]) -> Self {
-        let [p, q, r, _] = omega;
-        Self {
-            omega,
-            ahead: [q, r, p, 0.0],
-            behind: [r, p, q, 0.0],
-        }
+/// All coefficients of one order.
+pub type Order<const ROWS: usize> = [Four; ROWS];
+
+#[inline(always)]
+pub fn set_attitude<const ROWS: usize>(order: &mut Order<ROWS>, q: [f64; 4]) {
+    let [x, y, z, w] = q;
+    order[Q] = Four(q);
+    order[Q_W] = signed([w, w, w, x]);
+    order[Q_AHEAD] = signed([y, z, x, y]);
+    order[Q_BEHIND] = Four([z, x, y, z]);
+}
+
+/// The last with its sign turned: as a product, so that all four stay together.
+#[inline(always)]
+fn signed(mut row: [f64; 4]) -> Four {
+    for (c, sign) in row.iter_mut().zip([1.0, 1.0, 1.0, -1.0]) {
+        *c *= sign;
     }
+    Four(row)
 }
 
-/// Torque that is not linear in the rows.
-pub trait Levers<const W: usize> {
-    /// Its coefficient `k`, rows 0 to k being known: principal axes, N·m.
-    fn torque(&mut self, k: usize, rows: &[[f64; W]]) -> [f64; 4];
+#[inline(always)]
+pub fn set_spin<const ROWS: usize>(order: &mut Order<ROWS>, omega: [f64; 4]) {
+    let [p, q, r, _] = omega;
+    order[OMEGA] = Four(omega);
+    order[PLAIN] = Four([p, q, r, p]);
+    order[AHEAD] = Four([q, r, p, r]);
+    order[BEHIND] = Four([r, p, q, q]);
+}
+
+#[inline(always)]
+pub fn set_direction<const ROWS: usize>(order: &mut Order<ROWS>, d: usize, u: [f64; 4]) {
+    let [x, y, z, none] = u;
+    let rows = &mut order[rows(d)..];
+    rows[0] = Four(u);
+    rows[U_AHEAD] = Four([y, z, x, none]);
+    rows[U_BEHIND] = Four([z, x, y, none]);
+}
+
+/// u_d.
+#[inline(always)]
+pub fn direction<const ROWS: usize>(order: &Order<ROWS>, d: usize) -> [f64; 3] {
+    let Four([x, y, z, _]) = order[rows(d)];
+    [x, y, z]
+}
+
+/// Torque that is not linear in the directions.
+pub trait Levers<const ROWS: usize> {
+    /// Its coefficient `k`, orders 0 to k being known: principal axes, N·m.
+    fn torque(&mut self, k: usize, orders: &[Order<ROWS>]) -> [f64; 4];
 }
 
 /// There is none.
 pub struct NoLevers;
 
-impl<const W: usize> Levers<W> for NoLevers {
+impl<const ROWS: usize> Levers<ROWS> for NoLevers {
     #[inline(always)]
-    fn torque(&mut self, _: usize, _: &[[f64; W]]) -> [f64; 4] {
+    fn torque(&mut self, _: usize, _: &[Order<ROWS>]) -> [f64; 4] {
         [0.0; 4]
     }
 }
 
-/// Fills coefficients 1 to `order` from those of order 0, in powers of t/`unit`.
+/// Fills orders 1 and up from order 0, in powers of time over `unit`.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-pub fn expand<const W: usize, L: Levers<W>>(
+pub fn expand<const ROWS: usize, L: Levers<ROWS>>(
     law: &Turning,
     unit: f64,
-    order: usize,
-    rows: &mut [[f64; W]],
-    spins: &mut [Spin],
+    orders: &mut [Order<ROWS>],
     levers: &mut L,
 ) {
-    for k in 0..order {
-        let sums = convolve(k, rows, spins);
+    for k in 0..orders.len() - 1 {
+        let extra = levers.torque(k, orders);
         let step = unit * INVERSE[k + 1];
-        rows[k + 1] = turned(&sums, step);
-        let extra = levers.torque(k, rows);
-        spins[k + 1] = Spin::new(spun(law, k, &sums, extra, &rows[k], &spins[k], step));
-    }
-}
-
-/// Coefficient k of the rows times each component of ω, and of the products `ω_j ω_k`.
-struct Sums<const W: usize> {
-    p: [f64; W],
-    q: [f64; W],
-    r: [f64; W],
-    products: [f64; 4],
-}
-
-#[inline(always)]
-fn convolve<const W: usize>(k: usize, rows: &[[f64; W]], spins: &[Spin]) -> Sums<W> {
-    let mut sums = Sums {
-        p: [0.0; W],
-        q: [0.0; W],
-        r: [0.0; W],
-        products: [0.0; 4],
-    };
-    if k > 1 {
-        let (rows, spins) = (&rows[1..k], &spins[1..k]);
-        for ((spin, row), mirrored) in spins.iter().zip(rows.iter().rev()).zip(spins.iter().rev()) {
-            sums.add(spin, row, mirrored);
+        let sums = convolve(&orders[..=k]);
+        let omega = spun(law, k, &orders[k], &sums, extra, step);
+        let next = &mut orders[k + 1];
+        set_spin(next, omega);
+        set_attitude(next, sums.q.map(|c| c * (0.5 * step)));
+        for d in 0..directions::<ROWS>() {
+            set_direction(next, d, sums.u[d].map(|c| c * step));
         }
     }
-    if k > 0 {
-        sums.add(&spins[k], &rows[0], &spins[0]);
+}
+
+const fn directions<const ROWS: usize>() -> usize {
+    (ROWS - DIRECTIONS) / ROWS_OF_U
+}
+
+/// Coefficient k of 2 q', of `ω_j ω_k`, and of u'.
+#[derive(Default)]
+struct Sums {
+    q: [f64; 4],
+    products: [f64; 4],
+    u: [[f64; 4]; 3],
+}
+
+/// From orders 0 to k.
+#[inline(always)]
+fn convolve<const ROWS: usize>(orders: &[Order<ROWS>]) -> Sums {
+    let mut sums = Sums::default();
+    if let [first, middle @ .., last] = orders {
+        for (spin, order) in middle.iter().zip(middle.iter().rev()) {
+            sums.add(spin, order);
+        }
+        sums.add(last, first);
+        sums.add(first, last);
+    } else if let [only] = orders {
+        sums.add(only, only);
     }
-    sums.add(&spins[0], &rows[k], &spins[k]);
     sums
 }
 
-impl<const W: usize> Sums<W> {
+impl Sums {
+    /// ω of one order times everything of the other.
     #[inline(always)]
-    fn add(&mut self, spin: &Spin, row: &[f64; W], mirrored: &Spin) {
-        let [p, q, r, _] = spin.omega;
-        for lane in 0..W {
-            self.p[lane] += p * row[lane];
-            self.q[lane] += q * row[lane];
-            self.r[lane] += r * row[lane];
+    fn add<const ROWS: usize>(&mut self, spin: &Order<ROWS>, order: &Order<ROWS>) {
+        let [plain, ahead, behind] = [spin[PLAIN].0, spin[AHEAD].0, spin[BEHIND].0];
+        let [w, q_ahead, q_behind] = [order[Q_W].0, order[Q_AHEAD].0, order[Q_BEHIND].0];
+        for lane in 0..4 {
+            self.q[lane] += w[lane] * plain[lane]
+                + (q_ahead[lane] * behind[lane] - q_behind[lane] * ahead[lane]);
         }
         for lane in 0..4 {
-            self.products[lane] += spin.ahead[lane] * mirrored.behind[lane];
+            self.products[lane] += ahead[lane] * order[BEHIND].0[lane];
+        }
+        for d in 0..directions::<ROWS>() {
+            let u_ahead = order[rows(d) + U_AHEAD].0;
+            let u_behind = order[rows(d) + U_BEHIND].0;
+            for lane in 0..4 {
+                self.u[d][lane] += u_ahead[lane] * behind[lane] - u_behind[lane] * ahead[lane];
+            }
         }
     }
 }
 
-/// `½ q (ω, 0)` in the first row, `u × ω` in the others.
+/// Coefficient k + 1 of ω, `step` being unit/(k + 1).
 #[inline(always)]
-fn turned<const W: usize>(sums: &Sums<W>, step: f64) -> [f64; W] {
-    let Sums { p, q, r, .. } = sums;
-    let mut next = [0.0; W];
-    for row in 0..W / 4 {
-        let [x, y, z, w] = [4 * row, 4 * row + 1, 4 * row + 2, 4 * row + 3];
-        let factor = if row == 0 { 0.5 * step } else { step };
-        next[x] = factor * (p[w] + r[y] - q[z]);
-        next[y] = factor * (q[w] + p[z] - r[x]);
-        next[z] = factor * (r[w] + q[x] - p[y]);
-        if row == 0 {
-            next[w] = -factor * (p[x] + q[y] + r[z]);
-        }
-    }
-    next
-}
-
-#[inline(always)]
-fn spun<const W: usize>(
+fn spun<const ROWS: usize>(
     law: &Turning,
     k: usize,
-    sums: &Sums<W>,
+    order: &Order<ROWS>,
+    sums: &Sums,
     extra: [f64; 4],
-    row: &[f64; W],
-    spin: &Spin,
     step: f64,
 ) -> [f64; 4] {
     let mut torque = extra;
     if k == 0 {
-        torque = law.constant;
         for lane in 0..4 {
-            torque[lane] += extra[lane];
+            torque[lane] += law.constant[lane];
         }
     }
-    for (d, map) in law.maps.iter().enumerate().take(W / 4 - 1) {
-        let u = &row[4 * (d + 1)..];
+    for (d, map) in law.maps.iter().enumerate().take(directions::<ROWS>()) {
+        let [x, y, z] = direction(order, d);
         for lane in 0..4 {
-            torque[lane] += map[0][lane] * u[0] + map[1][lane] * u[1] + map[2][lane] * u[2];
+            torque[lane] += map[0][lane] * x + map[1][lane] * y + map[2][lane] * z;
         }
     }
     let mut next = [0.0; 4];
     for lane in 0..4 {
-        let n = law.spread[lane] * sums.products[lane] + torque[lane];
-        let alpha = n * law.inverse[lane] + n * law.rest[lane];
-        next[lane] = step * (alpha - law.drag * spin.omega[lane]);
+        let turning = law.spread[lane] * sums.products[lane]
+            + (torque[lane] - law.drag[lane] * order[OMEGA].0[lane]);
+        next[lane] = (turning * law.inverse[lane] + turning * law.rest[lane]) * step;
     }
     next
 }

@@ -8,7 +8,7 @@
 //! ```
 
 use super::law::{Carried, Lever};
-use super::recurrence::{INVERSE, Levers};
+use super::recurrence::{INVERSE, Levers, Order, direction, rows};
 use crate::body::State;
 use crate::effect::Frame;
 use nalgebra::Vector3;
@@ -31,17 +31,16 @@ pub struct Journey {
     end: (Vector3<f64>, Vector3<f64>),
 }
 
-/// Rows of the three axes of the world follow q's.
-const W: usize = 16;
+/// The three axes of the world are the directions.
+pub const ROWS: usize = rows(3);
 
-fn axis(row: &[f64; W], axis: usize) -> Vector3<f64> {
-    let start = 4 * (axis + 1);
-    Vector3::new(row[start], row[start + 1], row[start + 2])
+fn axis(order: &Order<ROWS>, axis: usize) -> Vector3<f64> {
+    direction(order, axis).into()
 }
 
 /// `Rᵀ v`.
-fn of_body(row: &[f64; W], v: Vector3<f64>) -> Vector3<f64> {
-    axis(row, 0) * v.x + axis(row, 1) * v.y + axis(row, 2) * v.z
+fn of_body(order: &Order<ROWS>, v: Vector3<f64>) -> Vector3<f64> {
+    axis(order, 0) * v.x + axis(order, 1) * v.y + axis(order, 2) * v.z
 }
 
 impl Journey {
@@ -106,11 +105,11 @@ impl Journey {
     }
 }
 
-impl Levers<W> for Journey {
-    fn torque(&mut self, k: usize, rows: &[[f64; W]]) -> [f64; 4] {
+impl Levers<ROWS> for Journey {
+    fn torque(&mut self, k: usize, orders: &[Order<ROWS>]) -> [f64; 4] {
         let law = &self.law;
         let step = self.unit * INVERSE[k + 1];
-        let pushed = Vector3::from_fn(|i, _| axis(&rows[k], i).dot(&law.b_p));
+        let pushed = Vector3::from_fn(|i, _| axis(&orders[k], i).dot(&law.b_p));
         let constant = if k == 0 { law.a_w } else { Vector3::zeros() };
         self.v[k + 1] = (constant + pushed - self.v[k] * law.drag) * step;
         self.xi[k + 1] = self.v[k] * step;
@@ -123,12 +122,12 @@ impl Levers<W> for Journey {
         let mut turning = Vector3::zeros();
         let mut shift = Vector3::zeros();
         for j in 0..=k {
-            turning += of_body(&rows[k - j], self.moment[j]);
-            shift += of_body(&rows[k - j], self.xi[j]);
+            turning += of_body(&orders[k - j], self.moment[j]);
+            shift += of_body(&orders[k - j], self.xi[j]);
         }
         for lever in &law.levers {
             if let Frame::Principal(f) = lever.force {
-                turning += of_body(&rows[k], lever.point_w - self.x_w).cross(&f);
+                turning += of_body(&orders[k], lever.point_w - self.x_w).cross(&f);
             }
         }
         super::padded(turning - shift.cross(&self.force_p))
