@@ -16,6 +16,7 @@
 //! equations in s.
 
 use super::flight::{Elapsed, Flight};
+use super::own_steps::nowhere;
 use super::{Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Step, Stepper, Work};
 use crate::body::{Inertial, State, StateBlock};
 use crate::effect::Decay;
@@ -47,6 +48,8 @@ impl Method for ClosedForm {
     }
 
     fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+        // What is refused has no closed form here; nobody shall take the free motion for it.
+        let refused = INFO.refuses(&interval).is_some();
         let wrench = interval.load.wrench(t, &interval.inertial, state);
         let path = |lane: usize| {
             let body = interval.inertial.get(lane);
@@ -61,6 +64,7 @@ impl Method for ClosedForm {
         };
         Box::new(Run {
             paths: (0..interval.bodies).map(path).collect(),
+            refused,
             decay: interval.load.decay().copied(),
             empty: *state,
             from: t,
@@ -73,6 +77,7 @@ impl Method for ClosedForm {
 #[derive(Clone)]
 struct Run {
     paths: Vec<Path>,
+    refused: bool,
     decay: Option<Decay>,
     /// What the lanes without a body hold.
     empty: StateBlock,
@@ -116,7 +121,11 @@ impl Stepper for Run {
         let angular = Elapsed::angular(self.decay.as_ref(), t);
         let mut block = self.empty;
         for (lane, path) in self.paths.iter().enumerate() {
-            block.set(lane, path.at(linear, angular));
+            let state = match self.refused {
+                true => nowhere(),
+                false => path.at(linear, angular),
+            };
+            block.set(lane, state);
         }
         block
     }

@@ -115,7 +115,8 @@ impl<W: Walk> Walker<W> {
     }
 }
 
-fn nowhere() -> State {
+/// The state of a body that cannot be followed.
+pub fn nowhere() -> State {
     let nowhere = Vector3::repeat(f64::NAN);
     State {
         x_w: nowhere,

@@ -100,7 +100,7 @@ fn asymmetric_top() -> (Load, Bodies, Quaternion<f64>) {
     let q0 = Quaternion::new(0.86_f64.sqrt(), 0.1, 0.3, -0.2);
     let (load, bodies) = top([1.0, 1.6, 2.1], [0.3, 0.2, 1.0], q0, [0.5, -0.8, 2.0]);
     let end = Quaternion::new(
-        -0.071_524_906_424_772_61,
+        -0.071_524_906_424_772_6,
         -0.051_812_189_728_397_31,
         -0.229_010_135_522_556_63,
         -0.969_409_120_332_801_6,
@@ -322,6 +322,21 @@ fn states_that_are_no_numbers_and_numbers_too_large_end_too() {
             let end = end(method, &load, &bodies, 1.0, 1e-6);
             assert!(!end.is_finite(), "{} {size} {turn}", method.info().name);
         }
+    }
+}
+
+#[test]
+fn a_load_that_was_refused_is_not_left_out_in_silence() {
+    let bodies = block(Vector3::repeat(1.0), rest());
+    let mut load = Load::default();
+    load.push(Arc::new(Runaway));
+    let refusing = METHODS.iter().filter(|method| {
+        let info = method.info();
+        info.kind != Kind::Fixed && info.refuses(&interval(&load, &bodies, 1.0, 1e-9)).is_some()
+    });
+    for method in refusing {
+        let end = end(*method, &load, &bodies, 1.0, 1e-9);
+        assert!(!end.is_finite(), "{}", method.info().name);
     }
 }
 

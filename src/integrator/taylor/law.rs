@@ -12,6 +12,7 @@
 //! force F of the body at P of the world    Rᵀ (P - x) × F    } own, unless the reference point stands still
 //! ```
 
+use super::four::Four;
 use crate::body::{Inertial, State};
 use crate::effect::{Frame, Load, Term};
 use crate::integrator::Interval;
@@ -32,16 +33,16 @@ pub struct Law {
 #[derive(Clone, Copy, Debug)]
 pub struct Turning {
     /// `I_j - I_k`; zero without the gyroscopic term.
-    pub spread: [f64; 4],
+    pub spread: Four,
     /// 1/I, and what its rounding leaves: without that, a phase grows as ω t 1e-16.
-    pub inverse: [f64; 4],
-    pub rest: [f64; 4],
+    pub inverse: Four,
+    pub rest: Four,
     /// N·m.
-    pub constant: [f64; 4],
+    pub constant: Four,
     /// Torque of each direction: columns, for the components of u_d.
-    pub maps: [[[f64; 4]; 3]; 3],
+    pub maps: [[Four; 3]; 3],
     /// `c I`, N·m·s.
-    pub drag: [f64; 4],
+    pub drag: Four,
 }
 
 /// How the reference point moves.
@@ -134,19 +135,19 @@ impl Turning {
             false => Dd::ONE / Dd::new(i),
         });
         let drag = load.decay().map_or(0.0, |decay| decay.angular_rate());
-        let mut maps = [[[0.0; 4]; 3]; 3];
+        let mut maps = [[Four::default(); 3]; 3];
         for (map, (_, matrix)) in maps.iter_mut().zip(directions) {
             for (column, of) in map.iter_mut().zip(matrix.column_iter()) {
-                *column = [of[0], of[1], of[2], 0.0];
+                *column = Four([of[0], of[1], of[2], 0.0]);
             }
         }
         Self {
-            spread: padded(spread),
-            inverse: padded(inverses.map(|inverse| inverse.hi)),
-            rest: padded(inverses.map(|inverse| inverse.lo)),
-            constant: padded(constant),
+            spread: spread.into(),
+            inverse: inverses.map(|inverse| inverse.hi).into(),
+            rest: inverses.map(|inverse| inverse.lo).into(),
+            constant: constant.into(),
             maps,
-            drag: padded(i * drag),
+            drag: (i * drag).into(),
         }
     }
 }
@@ -213,8 +214,4 @@ impl Torque {
         };
         (0..3).map(along).collect()
     }
-}
-
-pub fn padded(v: Vector3<f64>) -> [f64; 4] {
-    [v.x, v.y, v.z, 0.0]
 }

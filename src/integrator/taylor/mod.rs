@@ -20,23 +20,21 @@
 //! methods, Experimental Mathematics 14 (2005): order and step; Biscani & Izzo, MNRAS 504 (2021), section 2:
 //! the step's safety.
 
+mod four;
 mod law;
 mod recurrence;
 mod travel;
 
-use super::flight::Elapsed;
-use super::own_steps::{Run, Walk};
+use super::flight::{Elapsed, Flight};
+use super::own_steps::{Run, Walk, nowhere};
 use super::{Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Stepper, Work};
 use crate::body::{State, StateBlock};
-use crate::math::dd::two_sum;
-use law::{Law, Travel, padded};
+use four::{Four, larger};
+use law::{Law, Travel, Turning};
 use multiversion::multiversion;
 use nalgebra::{Quaternion, Vector3};
-use recurrence::{
-    Four, Levers, NoLevers, OMEGA, Order, Q, expand, rows, set_attitude, set_direction, set_spin,
-};
+use recurrence::{NoLevers, OMEGA, Order, Q, rows, set_attitude, set_direction, set_spin};
 use std::f64::consts::LOG2_E;
-use std::sync::Arc;
 use travel::Journey;
 
 pub struct Taylor;
@@ -64,27 +62,25 @@ impl Method for Taylor {
     }
 
     fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
-        let terms = interval.load.terms(&interval.inertial).unwrap_or_default();
+        // Forces that are no terms are refused; nobody shall take the motion for one without them.
+        let terms = interval.load.terms(&interval.inertial);
+        let known = terms.is_some();
+        let terms = terms.unwrap_or_default();
         let tolerance = interval.tolerance;
-        let bodies: Vec<Body> = (0..interval.bodies)
-            .map(|lane| {
-                let start = state.get(lane);
-                Body::new(
-                    Law::new(&interval, &terms, lane, &start),
-                    tolerance,
-                    t,
-                    &start,
-                )
-            })
-            .collect();
-        Box::new(Run::new(interval, state, |lane| bodies[lane].clone()))
+        let from = interval.clone();
+        Box::new(Run::new(interval, state, |lane| {
+            let start = if known { state.get(lane) } else { nowhere() };
+            Body::new(Law::new(&from, &terms, lane, &start), tolerance, t, &start)
+        }))
     }
 }
 
 /// One body on its way.
 #[derive(Clone)]
 struct Body {
-    law: Arc<Law>,
+    turning: Turning,
+    directions: Vec<Vector3<f64>>,
+    route: Route,
     order: usize,
     /// When it set out; the start and the end of the last step, s.
     set_out: f64,
@@ -94,44 +90,61 @@ struct Body {
     unit: f64,
     /// Of the step from `from`: the rows of each order.
     series: Vec<Four>,
-    journey: Option<Box<Journey>>,
-    /// At `reached`; |q| = 1.
-    q: [f64; 4],
-    omega: [f64; 4],
-    /// What the last additions to q and ω rounded away: with it, steps are added as if to twice the
-    /// digits (Kahan 1965).
-    q_rest: [f64; 4],
-    omega_rest: [f64; 4],
+    /// At `reached`, |q| = 1; and what the last addition to it rounded away.
+    turn: Turn,
+    rest: Turn,
     work: Work,
 }
+
+/// Attitude and angular velocity: q as (x, y, z, w), ω as (p, q, r, 0) in principal axes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Turn {
+    q: Four,
+    omega: Four,
+}
+
+/// Where the reference point is.
+#[derive(Clone)]
+enum Route {
+    Flight(Flight),
+    Journey(Box<Journey>),
+}
+
+/// Rows of an order with no direction, with one, and with the axes of the world.
+const NONE: usize = rows(0);
+const ONE: usize = rows(1);
+const AXES: usize = rows(3);
 
 impl Body {
     fn new(law: Law, tolerance: f64, t: f64, start: &State) -> Self {
         let order = order(tolerance);
-        let journey = match &law.travel {
-            Travel::Flight(_) => None,
-            Travel::Carried(carried) => Some(Box::new(Journey::new(carried.clone(), order, start))),
+        let route = match law.travel {
+            Travel::Flight(flight) => Route::Flight(flight),
+            Travel::Carried(carried) => {
+                Route::Journey(Box::new(Journey::new(carried, order, start)))
+            }
+        };
+        let width = match law.directions.len() {
+            0 => NONE,
+            1 => ONE,
+            _ => AXES,
         };
         let omega_p = start.to_principal(start.omega_w);
-        let turn = power_of_two(omega_p.amax());
-        let width = match law.directions.len() {
-            0 => rows(0),
-            1 => rows(1),
-            _ => rows(3),
-        };
         Self {
-            law: Arc::new(law),
+            turning: law.turning,
+            directions: law.directions,
+            route,
             order,
             set_out: t,
             from: t,
             reached: t,
-            unit: 1.0 / turn,
+            unit: 1.0 / power_of_two(omega_p.amax()),
             series: vec![Four::default(); width * (order + 1)],
-            journey,
-            q: start.q_wp.coords.into(),
-            omega: padded(omega_p),
-            q_rest: [0.0; 4],
-            omega_rest: [0.0; 4],
+            turn: Turn {
+                q: Four(start.q_wp.coords.into()),
+                omega: omega_p.into(),
+            },
+            rest: Turn::default(),
             work: Work::default(),
         }
     }
@@ -143,95 +156,74 @@ impl Body {
 
     /// Expands from the end of the last step.
     fn expand(&mut self) {
-        const NONE: usize = rows(0);
-        const ONE: usize = rows(1);
-        const AXES: usize = rows(3);
         self.work.evaluations += 1;
-        let (width, unit, start) = (self.width(), self.unit, (self.q, self.omega));
-        let (law, series) = (&self.law, &mut self.series[..]);
-        match (width, &mut self.journey) {
-            (NONE, _) => expand_from::<NONE, _>(start, law, unit, series, &mut NoLevers),
-            (ONE, _) => expand_from::<ONE, _>(start, law, unit, series, &mut NoLevers),
-            (_, None) => expand_from::<AXES, _>(start, law, unit, series, &mut NoLevers),
-            (_, Some(journey)) => {
-                journey.set_out(unit);
-                expand_from::<AXES, _>(start, law, unit, series, journey.as_mut());
+        match (self.width(), &mut self.route) {
+            (NONE, _) => self.expand_rows::<NONE>(),
+            (ONE, _) => self.expand_rows::<ONE>(),
+            (_, Route::Flight(_)) => self.expand_rows::<AXES>(),
+            (_, Route::Journey(journey)) => {
+                journey.set_out(self.unit);
+                let orders = first::<AXES>(&mut self.series, self.turn, &self.directions);
+                recurrence::expand(&self.turning, self.unit, orders, journey.as_mut());
             }
         }
     }
 
-    /// How far the polynomial is good for, s.
+    fn expand_rows<const ROWS: usize>(&mut self) {
+        let orders = first::<ROWS>(&mut self.series, self.turn, &self.directions);
+        recurrence::expand(&self.turning, self.unit, orders, &mut NoLevers);
+    }
+
+    /// How far the polynomial is good for, s; not a number where it is none.
     fn length(&self) -> f64 {
         let width = self.width();
-        let attitude = |k: usize| largest(&self.series[width * k + Q]);
-        let spin = |k: usize| largest(&self.series[width * k + OMEGA]);
-        let speed = |k: usize| {
-            self.journey
-                .as_ref()
-                .map_or(0.0, |journey| journey.speed(k))
+        let attitude = |k: usize| self.series[width * k + Q].largest();
+        let spin = |k: usize| self.series[width * k + OMEGA].largest();
+        let speed = |k: usize| match &self.route {
+            Route::Flight(_) => 0.0,
+            Route::Journey(journey) => journey.speed(k),
         };
         // What ω and v are over a time such as a step takes, so that neither counts as zero.
-        let lowest = |of: &dyn Fn(usize) -> f64| of(0).max(of(1)).max(of(2));
-        let (spin_scale, speed_scale) = (lowest(&spin), lowest(&speed));
-        // log2 of the radius at which term k would be 1.
+        let scale = |of: &dyn Fn(usize) -> f64| larger(of(0), larger(of(1), of(2)));
+        let (spin_scale, speed_scale) = (scale(&spin), scale(&speed));
+        let relative = |size: f64, scale: f64| if size == 0.0 { 0.0 } else { size / scale };
+        // log2 of the time at which term k would be 1.
         let radius = |k: usize| {
-            let relative = |size: f64, scale: f64| if size == 0.0 { 0.0 } else { size / scale };
             let spin = relative(spin(k), spin_scale);
             let speed = relative(speed(k), speed_scale);
             -rough_log2(larger(attitude(k), larger(spin, speed))) / k as f64
         };
         let n = self.order;
         let safety = (2.0 + 0.7 / (n - 1) as f64) * LOG2_E;
-        self.unit * libm::exp2(radius(n).min(radius(n - 1)) - safety)
+        // Not f64::min, which would hide what is not a number.
+        let radius = -larger(-radius(n), -radius(n - 1));
+        self.unit * libm::exp2(radius - safety)
     }
 
-    /// Takes q and ω at `s` units from the start for the end of the step.
+    /// Takes the polynomial at `s` units from the start for the end of the step.
     fn arrive(&mut self, s: f64) {
-        let (turn, spin) = change(self.width(), &self.series, s);
+        let Turn { q, omega } = change(self.width(), &self.series, s);
         // Half of what |q|² lacks of 1 brings q to unit length but for the square of that.
-        let square: f64 = (self.q.iter().zip(turn))
-            .map(|(q, turn)| (q + turn) * (q + turn))
-            .sum();
-        let lacks = 0.5 * (1.0 - square);
-        for lane in 0..4 {
-            let turn = turn[lane] + (self.q[lane] + turn[lane]) * lacks + self.q_rest[lane];
-            (self.q[lane], self.q_rest[lane]) = two_sum(self.q[lane], turn);
-            let spin = spin[lane] + self.omega_rest[lane];
-            (self.omega[lane], self.omega_rest[lane]) = two_sum(self.omega[lane], spin);
+        let [x, y, z, w] = (self.turn.q + q).0;
+        let lacks = 0.5 * (1.0 - (x * x + y * y + z * z + w * w));
+        let q = q + Four([x, y, z, w]) * lacks;
+        (self.turn.q, self.rest.q) = self.turn.q.plus(q + self.rest.q);
+        (self.turn.omega, self.rest.omega) = self.turn.omega.plus(omega + self.rest.omega);
+        if let Route::Journey(journey) = &mut self.route {
+            journey.arrive(s);
         }
     }
 
-    /// q, not quite of unit length, and ω, in principal axes, `s` units from the start of the step.
-    fn turned(&self, s: f64) -> ([f64; 4], [f64; 4]) {
-        let (turn, spin) = change(self.width(), &self.series, s);
-        let sum = |a: &Four, b: [f64; 4]| std::array::from_fn(|lane| a.0[lane] + b[lane]);
-        (sum(&self.series[Q], turn), sum(&self.series[OMEGA], spin))
-    }
-
-    fn state(
-        &self,
-        interval: &Interval,
-        t: f64,
-        (q, omega): ([f64; 4], [f64; 4]),
-        carried: impl Fn(&Journey) -> (Vector3<f64>, Vector3<f64>),
-    ) -> State {
-        let (x_w, v_w) = match (&self.law.travel, &self.journey) {
-            (_, Some(journey)) => carried(journey),
-            (Travel::Flight(flight), None) => {
-                flight.at(Elapsed::linear(interval.load.decay(), t - self.set_out))
-            }
-            // A body that is carried has a journey.
-            (Travel::Carried(_), None) => (Vector3::zeros(), Vector3::zeros()),
-        };
+    fn state(&self, turn: Turn, (x_w, v_w): (Vector3<f64>, Vector3<f64>)) -> State {
+        let q = Quaternion::from(turn.q.0);
         let state = State {
             x_w,
             v_w,
-            q_wp: Quaternion::from(unit_length(q)),
+            q_wp: q * (1.0 / q.norm()),
             omega_w: Vector3::zeros(),
         };
-        let [p, q, r, _] = omega;
         State {
-            omega_w: state.to_world(Vector3::new(p, q, r)),
+            omega_w: state.to_world(turn.omega.vector()),
             ..state
         }
     }
@@ -248,8 +240,7 @@ impl Walk for Body {
         }
         self.expand();
         let length = self.length();
-        // Not so either where it is no number.
-        if !(length > 0.0) {
+        if length.is_nan() {
             return None;
         }
         // The step as the two times have it, so that the clock has no rounding of its own.
@@ -262,21 +253,31 @@ impl Walk for Body {
         }
         self.from = self.reached;
         self.reached = to;
-        let s = (to - self.from) / self.unit;
-        self.arrive(s);
-        if let Some(journey) = &mut self.journey {
-            journey.arrive(s);
-        }
+        self.arrive((to - self.from) / self.unit);
         self.work.steps += 1;
         Some(())
     }
 
     fn at(&mut self, interval: &Interval, t: f64) -> State {
-        if t >= self.reached {
-            return self.state(interval, t, (self.q, self.omega), Journey::end);
-        }
         let s = (t - self.from) / self.unit;
-        self.state(interval, t, self.turned(s), |journey| journey.at(s))
+        let ends = t >= self.reached;
+        let turn = if ends {
+            self.turn
+        } else {
+            let Turn { q, omega } = change(self.width(), &self.series, s);
+            Turn {
+                q: self.series[Q] + q,
+                omega: self.series[OMEGA] + omega,
+            }
+        };
+        let place = match &self.route {
+            Route::Flight(flight) => {
+                flight.at(Elapsed::linear(interval.load.decay(), t - self.set_out))
+            }
+            Route::Journey(journey) if ends => journey.end(),
+            Route::Journey(journey) => journey.at(s),
+        };
+        self.state(turn, place)
     }
 
     fn work(&self) -> Work {
@@ -284,22 +285,20 @@ impl Walk for Body {
     }
 }
 
-/// Fills order 0 and from it all others.
-fn expand_from<const ROWS: usize, L: Levers<ROWS>>(
-    (q, omega): ([f64; 4], [f64; 4]),
-    law: &Law,
-    unit: f64,
-    series: &mut [Four],
-    levers: &mut L,
-) {
+/// The orders, the first of them filled.
+fn first<'s, const ROWS: usize>(
+    series: &'s mut [Four],
+    turn: Turn,
+    directions: &[Vector3<f64>],
+) -> &'s mut [Order<ROWS>] {
     let (orders, _): (&mut [Order<ROWS>], _) = series.as_chunks_mut();
-    set_attitude(&mut orders[0], q);
-    set_spin(&mut orders[0], omega);
-    let q = Quaternion::from(q);
-    for (d, direction_w) in law.directions.iter().enumerate() {
-        set_direction(&mut orders[0], d, padded(rotate_back(q, *direction_w)));
+    set_attitude(&mut orders[0], turn.q);
+    set_spin(&mut orders[0], turn.omega);
+    for (d, direction_w) in directions.iter().enumerate() {
+        let u = rotate_back(Quaternion::from(turn.q.0), *direction_w);
+        set_direction(&mut orders[0], d, u.into());
     }
-    expand(&law.turning, unit, orders, levers);
+    orders
 }
 
 /// `Rᵀ v`.
@@ -311,51 +310,30 @@ fn rotate_back(q: Quaternion<f64>, v: Vector3<f64>) -> Vector3<f64> {
 /// What q and ω change by until `s`: the sum of their series but for order 0, even and odd powers apart,
 /// so that neither waits for the other.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn change(width: usize, series: &[Four], s: f64) -> ([f64; 4], [f64; 4]) {
+fn change(width: usize, series: &[Four], s: f64) -> Turn {
     let square = s * s;
-    let (mut later, mut sooner) = ([0.0; 8], [0.0; 8]);
+    let (mut later, mut sooner) = (Turn::default(), Turn::default());
     for order in series[width..].chunks_exact(width).rev() {
-        let mut next = [0.0; 8];
-        for lane in 0..4 {
-            next[lane] = order[Q].0[lane] + later[lane] * square;
-            next[lane + 4] = order[OMEGA].0[lane] + later[lane + 4] * square;
-        }
+        let next = Turn {
+            q: order[Q] + later.q * square,
+            omega: order[OMEGA] + later.omega * square,
+        };
         (later, sooner) = (sooner, next);
     }
-    let (mut q, mut omega) = ([0.0; 4], [0.0; 4]);
-    for lane in 0..4 {
-        q[lane] = sooner[lane] * s + later[lane] * square;
-        omega[lane] = sooner[lane + 4] * s + later[lane + 4] * square;
+    Turn {
+        q: sooner.q * s + later.q * square,
+        omega: sooner.omega * s + later.omega * square,
     }
-    (q, omega)
-}
-
-/// The largest in size.
-fn largest(row: &Four) -> f64 {
-    row.0.iter().fold(0.0, |most, c| larger(most, c.abs()))
-}
-
-/// Unlike `f64::max`, not a number where either is none.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
-}
-
-fn unit_length(q: [f64; 4]) -> [f64; 4] {
-    let [x, y, z, w] = q;
-    let inverse = 1.0 / (x * x + y * y + z * z + w * w).sqrt();
-    q.map(|c| c * inverse)
 }
 
 /// `⌈1 - ½ ln tol⌉`.
 fn order(tolerance: f64) -> usize {
     let order = libm::ceil(1.0 - 0.5 * libm::log(tolerance));
-    // Tolerances that 64-bit numbers cannot hold, or that are none, take the highest.
-    if order >= 4.0 && order <= 20.0 {
-        order as usize
-    } else if order < 4.0 {
-        4
-    } else {
+    // Of tolerances that 64-bit numbers cannot hold, or that are none, the highest.
+    if order.is_nan() {
         20
+    } else {
+        order.clamp(4.0, 20.0) as usize
     }
 }
 

@@ -16,8 +16,10 @@
 //!
 //! The terms with the newest coefficients come last: all others can be summed before those are known.
 
+use super::four::Four;
 use super::law::Turning;
 use multiversion::multiversion;
+use nalgebra::Vector3;
 
 /// Coefficients beyond which none are taken: tolerance 1e-16 asks for 20.
 pub const HIGHEST: usize = 24;
@@ -32,11 +34,6 @@ pub const INVERSE: [f64; HIGHEST + 1] = {
     }
     inverse
 };
-
-/// Four numbers that go through arithmetic together.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(align(32))]
-pub struct Four(pub [f64; 4]);
 
 /// The rows of an order: q as (x, y, z, w) and as arranged above, ω as (p, q, r, 0) and likewise, then
 /// u as (x, y, z, 0) and likewise for each direction.
@@ -63,52 +60,44 @@ pub const fn rows(directions: usize) -> usize {
 pub type Order<const ROWS: usize> = [Four; ROWS];
 
 #[inline(always)]
-pub fn set_attitude<const ROWS: usize>(order: &mut Order<ROWS>, q: [f64; 4]) {
-    let [x, y, z, w] = q;
-    order[Q] = Four(q);
-    order[Q_W] = signed([w, w, w, x]);
-    order[Q_AHEAD] = signed([y, z, x, y]);
+pub fn set_attitude<const ROWS: usize>(order: &mut Order<ROWS>, q: Four) {
+    // A sign as a product, so that all four stay together.
+    const SIGN: Four = Four([1.0, 1.0, 1.0, -1.0]);
+    let [x, y, z, w] = q.0;
+    order[Q] = q;
+    order[Q_W] = Four([w, w, w, x]) * SIGN;
+    order[Q_AHEAD] = Four([y, z, x, y]) * SIGN;
     order[Q_BEHIND] = Four([z, x, y, z]);
 }
 
-/// The last with its sign turned: as a product, so that all four stay together.
 #[inline(always)]
-fn signed(mut row: [f64; 4]) -> Four {
-    for (c, sign) in row.iter_mut().zip([1.0, 1.0, 1.0, -1.0]) {
-        *c *= sign;
-    }
-    Four(row)
-}
-
-#[inline(always)]
-pub fn set_spin<const ROWS: usize>(order: &mut Order<ROWS>, omega: [f64; 4]) {
-    let [p, q, r, _] = omega;
-    order[OMEGA] = Four(omega);
+pub fn set_spin<const ROWS: usize>(order: &mut Order<ROWS>, omega: Four) {
+    let [p, q, r, _] = omega.0;
+    order[OMEGA] = omega;
     order[PLAIN] = Four([p, q, r, p]);
     order[AHEAD] = Four([q, r, p, r]);
     order[BEHIND] = Four([r, p, q, q]);
 }
 
 #[inline(always)]
-pub fn set_direction<const ROWS: usize>(order: &mut Order<ROWS>, d: usize, u: [f64; 4]) {
-    let [x, y, z, none] = u;
+pub fn set_direction<const ROWS: usize>(order: &mut Order<ROWS>, d: usize, u: Four) {
+    let [x, y, z, none] = u.0;
     let rows = &mut order[rows(d)..];
-    rows[0] = Four(u);
+    rows[0] = u;
     rows[U_AHEAD] = Four([y, z, x, none]);
     rows[U_BEHIND] = Four([z, x, y, none]);
 }
 
 /// u_d.
 #[inline(always)]
-pub fn direction<const ROWS: usize>(order: &Order<ROWS>, d: usize) -> [f64; 3] {
-    let Four([x, y, z, _]) = order[rows(d)];
-    [x, y, z]
+pub fn direction<const ROWS: usize>(order: &Order<ROWS>, d: usize) -> Vector3<f64> {
+    order[rows(d)].vector()
 }
 
 /// Torque that is not linear in the directions.
 pub trait Levers<const ROWS: usize> {
     /// Its coefficient `k`, orders 0 to k being known: principal axes, N·m.
-    fn torque(&mut self, k: usize, orders: &[Order<ROWS>]) -> [f64; 4];
+    fn torque(&mut self, k: usize, orders: &[Order<ROWS>]) -> Four;
 }
 
 /// There is none.
@@ -116,8 +105,8 @@ pub struct NoLevers;
 
 impl<const ROWS: usize> Levers<ROWS> for NoLevers {
     #[inline(always)]
-    fn torque(&mut self, _: usize, _: &[Order<ROWS>]) -> [f64; 4] {
-        [0.0; 4]
+    fn torque(&mut self, _: usize, _: &[Order<ROWS>]) -> Four {
+        Four::default()
     }
 }
 
@@ -136,9 +125,9 @@ pub fn expand<const ROWS: usize, L: Levers<ROWS>>(
         let omega = spun(law, k, &orders[k], &sums, extra, step);
         let next = &mut orders[k + 1];
         set_spin(next, omega);
-        set_attitude(next, sums.q.map(|c| c * (0.5 * step)));
+        set_attitude(next, sums.q * (0.5 * step));
         for d in 0..directions::<ROWS>() {
-            set_direction(next, d, sums.u[d].map(|c| c * step));
+            set_direction(next, d, sums.u[d] * step);
         }
     }
 }
@@ -150,9 +139,9 @@ const fn directions<const ROWS: usize>() -> usize {
 /// Coefficient k of 2 q', of `ω_j ω_k`, and of u'.
 #[derive(Default)]
 struct Sums {
-    q: [f64; 4],
-    products: [f64; 4],
-    u: [[f64; 4]; 3],
+    q: Four,
+    products: Four,
+    u: [Four; 3],
 }
 
 /// From orders 0 to k.
@@ -175,21 +164,11 @@ impl Sums {
     /// ω of one order times everything of the other.
     #[inline(always)]
     fn add<const ROWS: usize>(&mut self, spin: &Order<ROWS>, order: &Order<ROWS>) {
-        let [plain, ahead, behind] = [spin[PLAIN].0, spin[AHEAD].0, spin[BEHIND].0];
-        let [w, q_ahead, q_behind] = [order[Q_W].0, order[Q_AHEAD].0, order[Q_BEHIND].0];
-        for lane in 0..4 {
-            self.q[lane] += w[lane] * plain[lane]
-                + (q_ahead[lane] * behind[lane] - q_behind[lane] * ahead[lane]);
-        }
-        for lane in 0..4 {
-            self.products[lane] += ahead[lane] * order[BEHIND].0[lane];
-        }
-        for d in 0..directions::<ROWS>() {
-            let u_ahead = order[rows(d) + U_AHEAD].0;
-            let u_behind = order[rows(d) + U_BEHIND].0;
-            for lane in 0..4 {
-                self.u[d][lane] += u_ahead[lane] * behind[lane] - u_behind[lane] * ahead[lane];
-            }
+        let [plain, ahead, behind] = [spin[PLAIN], spin[AHEAD], spin[BEHIND]];
+        self.q += order[Q_W] * plain + (order[Q_AHEAD] * behind - order[Q_BEHIND] * ahead);
+        self.products += order[BEHIND] * ahead;
+        for (d, u) in self.u.iter_mut().enumerate().take(directions::<ROWS>()) {
+            *u += order[rows(d) + U_AHEAD] * behind - order[rows(d) + U_BEHIND] * ahead;
         }
     }
 }
@@ -201,26 +180,14 @@ fn spun<const ROWS: usize>(
     k: usize,
     order: &Order<ROWS>,
     sums: &Sums,
-    extra: [f64; 4],
+    extra: Four,
     step: f64,
-) -> [f64; 4] {
-    let mut torque = extra;
-    if k == 0 {
-        for lane in 0..4 {
-            torque[lane] += law.constant[lane];
-        }
-    }
+) -> Four {
+    let mut torque = if k == 0 { law.constant + extra } else { extra };
     for (d, map) in law.maps.iter().enumerate().take(directions::<ROWS>()) {
-        let [x, y, z] = direction(order, d);
-        for lane in 0..4 {
-            torque[lane] += map[0][lane] * x + map[1][lane] * y + map[2][lane] * z;
-        }
+        let [x, y, z, _] = order[rows(d)].0;
+        torque += map[0] * x + map[1] * y + map[2] * z;
     }
-    let mut next = [0.0; 4];
-    for lane in 0..4 {
-        let turning = law.spread[lane] * sums.products[lane]
-            + (torque[lane] - law.drag[lane] * order[OMEGA].0[lane]);
-        next[lane] = (turning * law.inverse[lane] + turning * law.rest[lane]) * step;
-    }
-    next
+    let turning = law.spread * sums.products + (torque - law.drag * order[OMEGA]);
+    (turning * law.inverse + turning * law.rest) * step
 }

@@ -7,6 +7,7 @@
 //! (Rᵀ m)_k = Σ_i Σ_j m_ij u_i(k-j)
 //! ```
 
+use super::four::Four;
 use super::law::{Carried, Lever};
 use super::recurrence::{INVERSE, Levers, Order, direction, rows};
 use crate::body::State;
@@ -35,7 +36,7 @@ pub struct Journey {
 pub const ROWS: usize = rows(3);
 
 fn axis(order: &Order<ROWS>, axis: usize) -> Vector3<f64> {
-    direction(order, axis).into()
+    direction(order, axis)
 }
 
 /// `Rᵀ v`.
@@ -106,7 +107,7 @@ impl Journey {
 }
 
 impl Levers<ROWS> for Journey {
-    fn torque(&mut self, k: usize, orders: &[Order<ROWS>]) -> [f64; 4] {
+    fn torque(&mut self, k: usize, orders: &[Order<ROWS>]) -> Four {
         let law = &self.law;
         let step = self.unit * INVERSE[k + 1];
         let pushed = Vector3::from_fn(|i, _| axis(&orders[k], i).dot(&law.b_p));
@@ -114,7 +115,7 @@ impl Levers<ROWS> for Journey {
         self.v[k + 1] = (constant + pushed - self.v[k] * law.drag) * step;
         self.xi[k + 1] = self.v[k] * step;
         if law.levers.is_empty() {
-            return [0.0; 4];
+            return Four::default();
         }
         if k > 0 {
             self.moment[k] = -self.xi[k].cross(&self.force_w);
@@ -130,6 +131,6 @@ impl Levers<ROWS> for Journey {
                 turning += of_body(&orders[k], lever.point_w - self.x_w).cross(&f);
             }
         }
-        super::padded(turning - shift.cross(&self.force_p))
+        (turning - shift.cross(&self.force_p)).into()
     }
 }
