@@ -54,6 +54,23 @@ impl Decay {
     pub fn angular_factor(&self, h: f64) -> f64 {
         self.angular.factor(h)
     }
+
+    /// `T = (1 - e^{-k h}) / k`, s: the undamped time in which a body alone goes as far as damped
+    /// in `h` seconds.
+    pub fn linear_time(&self, h: f64) -> f64 {
+        self.linear.time(h)
+    }
+
+    /// `(h - T) / k`, s²: how far a constant acceleration of 1 moves a body from rest in `h` seconds.
+    pub fn linear_fall(&self, h: f64) -> f64 {
+        self.linear.fall(h)
+    }
+
+    /// `(1 - e^{-c h}) / c`, s: the undamped time in which a body that no torque turns, turns as far
+    /// as damped in `h` seconds (`L = L0 e^{-ct}` slows the same motion down).
+    pub fn angular_time(&self, h: f64) -> f64 {
+        self.angular.time(h)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,6 +115,53 @@ impl Rate {
         match self.written {
             Some((step, factor)) if step == h => factor,
             _ => libm::exp(-self.rate * h),
+        }
+    }
+
+    fn time(&self, h: f64) -> f64 {
+        match self.rate {
+            0.0 => h,
+            rate => -libm::expm1(-rate * h) / rate,
+        }
+    }
+
+    fn fall(&self, h: f64) -> f64 {
+        let z = self.rate * h;
+        if z.abs() > 0.5 {
+            return (h - self.time(h)) / self.rate;
+        }
+        // h² Σ (-z)^j / (j + 2)!, where the difference would cancel: the 15th term is 0.5¹⁵/17! of h².
+        let sum = (0..15_u32)
+            .rev()
+            .fold(0.0, |sum, j| (1.0 - z * sum) / f64::from(j + 2));
+        h * h * sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_and_falls_are_those_of_the_closed_form_at_any_rate() {
+        // T and (h - T)/k in 40 digits (mpmath), h = 0.75; z = k h on both sides of the series' end.
+        let cases = [
+            (0.0, 0.75, 0.28125),
+            (1e-9, 0.749_999_999_718_75, 0.281_249_999_929_687_5),
+            (0.6, 0.603_953_080_630_377_9, 0.243_411_532_282_703_6),
+            (0.7, 0.583_492_336_618_835_6, 0.237_868_090_544_520_58),
+            (40.0, 0.024_999_999_999_997_66, 0.018_125_000_000_000_058),
+        ];
+        for (k, time, fall) in cases {
+            let rate = Rate::new("linear", Some(k), None, 1.0).unwrap();
+            let decay = Decay {
+                linear: rate,
+                angular: rate,
+            };
+            // A few roundings.
+            assert!((decay.linear_time(0.75) / time - 1.0).abs() < 1e-15, "{k}");
+            assert!((decay.angular_time(0.75) / time - 1.0).abs() < 1e-15, "{k}");
+            assert!((decay.linear_fall(0.75) / fall - 1.0).abs() < 1e-15, "{k}");
         }
     }
 }

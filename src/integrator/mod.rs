@@ -8,7 +8,9 @@
 //! A kernel is written for one body in nalgebra's terms and called for the eight lanes of a block
 //! in a loop that is compiled for the vector widths the processor has.
 
+mod coast;
 mod common;
+mod dmv;
 mod explicit_euler;
 mod info;
 mod lie_midpoint;
@@ -16,7 +18,7 @@ mod one_step;
 mod rk4;
 mod semi_implicit;
 
-pub use info::{Accepts, Cost, Damping, Kind, MethodInfo, Refusal};
+pub use info::{Accepts, Cost, Damping, Kind, MethodInfo, Models, Refusal};
 
 use crate::body::{InertialBlock, StateBlock};
 use crate::effect::Load;
@@ -103,6 +105,11 @@ pub const METHODS: &[&dyn Method] = &[
     &Stepped(explicit_euler::ExplicitEuler),
     &Stepped(lie_midpoint::LieMidpoint),
     &Stepped(rk4::Rk4),
+    &dmv::DMV2,
+    &dmv::DMV4,
+    &dmv::DMV6,
+    &dmv::DMV8,
+    &dmv::DMV10,
 ];
 
 /// The method used where a scene names none: the most accurate of those that take every load.

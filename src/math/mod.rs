@@ -9,4 +9,4 @@ mod quaternion;
 pub use dd::Dd;
 pub use eigen::symmetric_eigen;
 pub use expansion::Expansion;
-pub use quaternion::{axis_angle, exponential, spin_rate};
+pub use quaternion::{axis_angle, exponential, spin_rate, turned};
