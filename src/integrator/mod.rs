@@ -13,6 +13,7 @@ mod common;
 mod dmv;
 mod explicit_euler;
 mod info;
+mod kicks;
 mod lie_midpoint;
 mod one_step;
 mod rk4;
@@ -22,6 +23,7 @@ pub use info::{Accepts, Cost, Damping, Kind, MethodInfo, Models, Refusal};
 
 use crate::body::{InertialBlock, StateBlock};
 use crate::effect::Load;
+use kicks::Kicks;
 use one_step::Stepped;
 
 /// A stretch of time in which nothing begins, ends or jumps.
@@ -105,6 +107,12 @@ pub const METHODS: &[&dyn Method] = &[
     &Stepped(explicit_euler::ExplicitEuler),
     &Stepped(lie_midpoint::LieMidpoint),
     &Stepped(rk4::Rk4),
+    &Kicks(&kicks::STRANG),
+    &Kicks(&kicks::RKN4),
+    &Kicks(&kicks::RKN6),
+    &Kicks(&kicks::ORDER8),
+    &Kicks(&kicks::ABA864),
+    &Kicks(&kicks::ABA1064),
     &dmv::DMV2,
     &dmv::DMV4,
     &dmv::DMV6,
