@@ -10,6 +10,7 @@
 
 mod coast;
 mod common;
+mod dlm;
 mod dmv;
 mod explicit_euler;
 mod info;
@@ -113,6 +114,7 @@ pub const METHODS: &[&dyn Method] = &[
     &Kicks(&kicks::ORDER8),
     &Kicks(&kicks::ABA864),
     &Kicks(&kicks::ABA1064),
+    &dlm::Dlm,
     &dmv::DMV2,
     &dmv::DMV4,
     &dmv::DMV6,
