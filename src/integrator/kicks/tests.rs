@@ -2,13 +2,13 @@
 
 use super::*;
 use crate::body::{InertialBlock, LANES};
-use crate::effect::{Depends, Effect, Load};
+use crate::effect::{Depends, Effect, Load, Value};
 use crate::exact::FreeMotion;
-use crate::integrator::Work;
 use crate::integrator::dmv::Preprocessed;
 use crate::integrator::tests::{
-    advance, angle, free_triaxial, gyroscopic, heavy_top, heavy_top_at, interval, steps,
+    advance, angle, effect, free_triaxial, gyroscopic, heavy_top, heavy_top_at, interval, steps,
 };
+use crate::integrator::{Work, find};
 use nalgebra::Quaternion;
 
 const ALL: [&Composition; 6] = [&STRANG, &RKN4, &RKN6, &ORDER8, &ABA864, &ABA1064];
@@ -83,7 +83,6 @@ fn the_heavy_top_after_a_hundred_seconds() {
     for (c, n) in [(&RKN6, 4_000), (&ORDER8, 4_000), (&ABA864, 20_000)] {
         let end = advance(&Kicks(c), &load, &bodies, 100.0, n);
         let gap = angle(end.q_wp, heavy_top_at(100));
-        println!("{} {gap}", c.info.name);
         assert!(gap < 1e-12, "{}: {gap}", c.info.name);
     }
 }
@@ -181,6 +180,42 @@ fn a_torque_that_depends_on_velocity_is_refused() {
         let why = c.info.refuses(&interval(&load, bodies.0, 1.0)).unwrap().0;
         assert!(why.contains("depends on velocity"), "{why}");
         assert!(c.info.refuses(&interval(&weight, bodies.0, 1.0)).is_none());
+    }
+}
+
+/// The heavy top, damped, in either model: the order declared, against another method's fine steps.
+#[test]
+fn damping_and_the_tutorials_model_cost_no_order_beside_a_torque() {
+    let ((inertials, states), weight, _) = heavy_top();
+    for gyro in [true, false] {
+        let mut load = if gyro {
+            weight.clone()
+        } else {
+            Load::default()
+        };
+        if !gyro {
+            effect("gravity", Value::Vector(-Vector3::z()), &mut load);
+        }
+        let rates = vec![Some(0.1), Some(0.3), None, None];
+        effect("damping", Value::Table(rates), &mut load);
+        let bodies = (inertials, states);
+        // Long enough for small steps to be needed.
+        let t = 10.0;
+        // (h ω)⁴ = 1e-13 and less, and as much rounding.
+        let reference = advance(find("rk4").unwrap(), &load, &bodies, t, 50_000).q_wp;
+        // Steps so fine that the leading term leads and so coarse that the reference is exact beside them.
+        for (c, n) in ALL.into_iter().zip([400, 250, 45, 45, 250, 250]) {
+            let error = |n| angle(advance(&Kicks(c), &load, &bodies, t, n).q_wp, reference);
+            let (coarse, fine) = (error(n), error(2 * n));
+            let slope = (coarse / fine).log2();
+            let declared = f64::from(c.info.order);
+            // Palindromes have even orders: a lost order shows as 2 less.
+            assert!(
+                (slope - declared).abs() < 0.5,
+                "{}: {slope}, {coarse} {fine}",
+                c.info.name
+            );
+        }
     }
 }
 
