@@ -31,7 +31,7 @@
 //! Integration, IV.7; Cox & Matthews, J. Comput. Phys. 176 (2002) 430-455.
 
 use super::{
-    Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Step, Stepper, Work, scalar,
+    Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Step, Stepper, Work, scalar,
 };
 use crate::body::{Inertial, LANES, State, StateBlock};
 use crate::effect::{Load, WrenchBlock};
@@ -53,12 +53,14 @@ pub const BUSS: Buss = Buss {
         engines: &[],
         kind: Kind::Fixed,
         order: 2,
+        models: Models::Both,
         accepts: Accepts::Any,
         damping: Damping::Exact(
             "a free body at its slower time, torques by exponential time differencing: exact by itself, order 2 with torques",
         ),
         reversible: false,
         keeps_momentum: true,
+        exact_free: false,
         preserves: "L of a free body, |q| by construction",
         cost: Cost {
             evaluations: 2,
@@ -74,6 +76,7 @@ pub const BUSS3: Buss = Buss {
     info: &MethodInfo {
         name: "buss3",
         order: 3,
+        models: Models::Both,
         accepts: Accepts::Free,
         damping: Damping::Exact("a free body at its slower time"),
         cost: Cost {
@@ -328,8 +331,8 @@ mod tests {
             let n = 2_000;
             let worse = error(&BUSS, n) / error(&without, n);
             assert!((1.3..3.1).contains(&worse), "{inertia} {omega}: {worse}");
-            let second = slope(&ladder(2, |n| error(&BUSS, n)));
-            let third = slope(&ladder(3, |n| error(&BUSS3, n)));
+            let second = slope(&ladder(BUSS.info(), |n| error(&BUSS, n)));
+            let third = slope(&ladder(BUSS3.info(), |n| error(&BUSS3, n)));
             assert!((second - 2.0).abs() < 0.1, "{inertia} {omega}: {second}");
             assert!((third - 3.0).abs() < 0.1, "{inertia} {omega}: {third}");
         }

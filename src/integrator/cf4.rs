@@ -20,7 +20,7 @@
 use super::common::{HalfDecay, Rate, RateBlock, along, decayed};
 use super::one_step::OneStep;
 use super::scalar::{each, rates, turned};
-use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo};
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{State, StateBlock};
 use nalgebra::Vector3;
 
@@ -32,10 +32,12 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Fixed,
     order: 4,
+    models: Models::Both,
     accepts: Accepts::Any,
     damping: Damping::Exact("integrating factor: exact by itself, order 4 with torques"),
     reversible: false,
     keeps_momentum: false,
+    exact_free: false,
     preserves: "|q| by construction; rotation at constant ω exactly",
     cost: Cost {
         evaluations: 4,

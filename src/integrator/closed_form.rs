@@ -17,7 +17,9 @@
 
 use super::flight::{Elapsed, Flight};
 use super::own_steps::nowhere;
-use super::{Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Step, Stepper, Work};
+use super::{
+    Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Step, Stepper, Work,
+};
 use crate::body::{Inertial, State, StateBlock};
 use crate::effect::Decay;
 use crate::exact::FreeMotion;
@@ -30,10 +32,12 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Closed,
     order: 0,
+    models: Models::Both,
     accepts: Accepts::Free,
     damping: Damping::Exact("by the time change s = (1 - e^{-ct})/c: exact"),
     reversible: true,
     keeps_momentum: true,
+    exact_free: true,
     preserves: "everything a free body keeps, to rounding, at any time",
     cost: Cost {
         evaluations: 0,

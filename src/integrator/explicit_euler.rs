@@ -10,7 +10,7 @@
 
 use super::common::{Acceleration, Forces, Rate, along, damp, normalised, with_forces};
 use super::one_step::OneStep;
-use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo};
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{InertialBlock, LANES, State, StateBlock};
 use crate::math::spin_rate;
 use multiversion::multiversion;
@@ -24,9 +24,11 @@ const INFO: MethodInfo = MethodInfo {
     kind: Kind::Fixed,
     order: 1,
     accepts: Accepts::Any,
+    models: Models::Both,
     damping: Damping::Exact("after the step, exact factor"),
     reversible: false,
     keeps_momentum: false,
+    exact_free: false,
     preserves: "nothing; an oscillation's energy grows by 1 + (hΩ)² a step (kept to show it)",
     cost: Cost {
         evaluations: 1,

@@ -27,7 +27,7 @@
 use super::common::{decayed, normalised};
 use super::one_step::OneStep;
 use super::scalar::{applied, each, turned};
-use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo};
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{Inertial, State, StateBlock};
 use nalgebra::{Matrix3, Vector3};
 
@@ -39,10 +39,12 @@ const INFO: MethodInfo = MethodInfo {
     engines: &["bullet"],
     kind: Kind::Fixed,
     order: 1,
+    models: Models::Both,
     accepts: Accepts::Any,
     damping: Damping::Exact("before the step, exact factor"),
     reversible: false,
     keeps_momentum: false,
+    exact_free: false,
     preserves: "nothing; a free body loses energy and momentum",
     cost: Cost {
         evaluations: 1,

@@ -14,11 +14,14 @@ pub struct MethodInfo {
     /// choose their own steps, of the formula they use.
     pub order: u32,
     pub accepts: Accepts,
+    pub models: Models,
     pub damping: Damping,
     /// A step back undoes a step forth, to rounding.
     pub reversible: bool,
     /// Of a free body |L|, in the world its direction too, is kept to rounding.
     pub keeps_momentum: bool,
+    /// The motion of a body on which nothing acts is exact to rounding, whatever the steps.
+    pub exact_free: bool,
     /// What it keeps, for readers.
     pub preserves: &'static str,
     pub cost: Cost,
@@ -49,6 +52,14 @@ pub enum Accepts {
     Free,
 }
 
+/// Whether bodies may keep their angular velocity where no torque acts (the tutorial's model) or
+/// must keep their angular momentum (Euler's equations).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Models {
+    Both,
+    Gyroscopic,
+}
+
 /// How damping enters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damping {
@@ -68,7 +79,8 @@ pub struct Cost {
     /// Evaluations of the equations of motion a step; 0 where it varies.
     pub evaluations: u32,
     /// Time of a step of one free body alone, in units of a step of rk4, as the benchmark
-    /// measured it; of an evaluation at one instant for a closed form.
+    /// measured it; of an evaluation at one instant for a closed form. Methods that are exact on a
+    /// free body take no steps there: theirs is of a top under gravity, rk4's too.
     pub weight: f64,
 }
 
@@ -114,6 +126,11 @@ impl MethodInfo {
         let refusal = |why: &str| Some(Refusal(format!("{} {why}", self.name)));
         if self.damping == Damping::Refused && load.decay().is_some() {
             return refusal("takes no damping");
+        }
+        if self.models == Models::Gyroscopic && !load.gyroscopic() {
+            return refusal(
+                "moves bodies that keep their angular momentum (gyroscopic = true); in the tutorial's model they keep their angular velocity",
+            );
         }
         let depends: Depends = load.depends(inertial);
         match self.accepts {

@@ -14,7 +14,7 @@
 
 use super::common::{Acceleration, Forces, HalfDecay, damp, decayed, with_forces};
 use super::one_step::OneStep;
-use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo};
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{InertialBlock, LANES, State, StateBlock};
 use crate::math::exponential;
 use multiversion::multiversion;
@@ -28,9 +28,11 @@ const INFO: MethodInfo = MethodInfo {
     kind: Kind::Fixed,
     order: 2,
     accepts: Accepts::Any,
+    models: Models::Both,
     damping: Damping::Exact("integrating factor: exact by itself, order 2 with torques"),
     reversible: false,
     keeps_momentum: false,
+    exact_free: false,
     preserves: "|q| by construction; rotation at constant ω exactly",
     cost: Cost {
         evaluations: 2,

@@ -11,12 +11,16 @@
 mod buss;
 mod cf4;
 mod closed_form;
+mod coast;
 mod common;
+mod dlm;
+mod dmv;
 mod dop853;
 mod explicit_euler;
 mod flight;
 mod implicit_gyroscopic;
 mod info;
+mod kicks;
 mod lie_midpoint;
 mod momentum_restoring;
 mod one_step;
@@ -28,11 +32,12 @@ mod scalar;
 mod semi_implicit;
 mod taylor;
 
-pub use info::{Accepts, Cost, Damping, Kind, MethodInfo, Refusal};
+pub use info::{Accepts, Cost, Damping, Kind, MethodInfo, Models, Refusal};
 pub use pieces::Pieces;
 
 use crate::body::{InertialBlock, StateBlock};
 use crate::effect::Load;
+use kicks::Kicks;
 use one_step::Stepped;
 
 /// A stretch of time in which nothing begins, ends or jumps.
@@ -129,7 +134,20 @@ pub const METHODS: &[&dyn Method] = &[
     &Stepped(rk4::Rk4),
     &dop853::Dop853,
     &taylor::Taylor,
-    // The exact motion.
+    // Free motion exact or nearly so, and kicks.
+    &dlm::Dlm,
+    &Kicks(&kicks::STRANG),
+    &Kicks(&kicks::RKN4),
+    &Kicks(&kicks::RKN6),
+    &Kicks(&kicks::ORDER8),
+    &Kicks(&kicks::ABA864),
+    &Kicks(&kicks::ABA1064),
+    // The free body alone.
+    &dmv::DMV2,
+    &dmv::DMV4,
+    &dmv::DMV6,
+    &dmv::DMV8,
+    &dmv::DMV10,
     &closed_form::ClosedForm,
 ];
 

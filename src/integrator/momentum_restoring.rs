@@ -37,7 +37,7 @@
 use super::common::{decayed, normalised};
 use super::one_step::OneStep;
 use super::scalar::{applied, each, turned};
-use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo};
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{Inertial, State, StateBlock};
 use crate::effect::Decay;
 use crate::math::spin_rate;
@@ -57,10 +57,12 @@ const RAPIER: MethodInfo = MethodInfo {
     engines: &["rapier"],
     kind: Kind::Fixed,
     order: 1,
+    models: Models::Both,
     accepts: Accepts::Any,
     damping: Damping::Engine("1/(1 + c h) at the step's end: never turns round, order 1"),
     reversible: false,
     keeps_momentum: false,
+    exact_free: false,
     preserves: "|L| of a free body in its own gyroscopic step, not L's direction",
     cost: Cost {
         evaluations: 1,

@@ -27,7 +27,7 @@ use super::common::{
     Forces, HalfDecay, Rate, RateBlock, along, decayed, normalised, rate, with_forces,
 };
 use super::one_step::OneStep;
-use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo};
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{InertialBlock, LANES, State, StateBlock};
 use multiversion::multiversion;
 
@@ -40,9 +40,11 @@ const INFO: MethodInfo = MethodInfo {
     kind: Kind::Fixed,
     order: 4,
     accepts: Accepts::Any,
+    models: Models::Both,
     damping: Damping::Exact("integrating factor: exact by itself, order 4 with torques"),
     reversible: false,
     keeps_momentum: false,
+    exact_free: false,
     preserves: "nothing exactly; energy and momentum drift as h⁴",
     cost: Cost {
         evaluations: 4,

@@ -21,7 +21,7 @@
 
 use super::one_step::OneStep;
 use super::scalar::{each, occupied};
-use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo};
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{Inertial, LANES, State, StateBlock};
 use crate::effect::{Load, Wrench};
 use crate::math::exponential;
@@ -35,10 +35,12 @@ const INFO: MethodInfo = MethodInfo {
     engines: &["mujoco-rk4"],
     kind: Kind::Fixed,
     order: 4,
+    models: Models::Both,
     accepts: Accepts::Any,
     damping: Damping::Engine("torques -c I ω and forces -k m v inside the stages: order 4"),
     reversible: false,
     keeps_momentum: false,
+    exact_free: false,
     preserves: "|q| by construction; energy and momentum drift as h⁴",
     cost: Cost {
         evaluations: 4,

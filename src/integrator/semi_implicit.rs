@@ -11,7 +11,7 @@
 
 use super::common::{Acceleration, Forces, damp, with_forces};
 use super::one_step::OneStep;
-use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo};
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{InertialBlock, LANES, State, StateBlock};
 use crate::math::spin_rate;
 use multiversion::multiversion;
@@ -25,9 +25,11 @@ const INFO: MethodInfo = MethodInfo {
     kind: Kind::Fixed,
     order: 1,
     accepts: Accepts::Any,
+    models: Models::Both,
     damping: Damping::Exact("after the step, exact factor"),
     reversible: false,
     keeps_momentum: false,
+    exact_free: false,
     preserves: "angular velocity where no torque acts and the gyroscopic term is absent",
     cost: Cost {
         evaluations: 1,

@@ -15,5 +15,5 @@ pub use agm::agm;
 pub use dd::Dd;
 pub use eigen::symmetric_eigen;
 pub use expansion::Expansion;
-pub use quaternion::{angle_between, axis_angle, exponential, spin_rate};
+pub use quaternion::{angle_between, axis_angle, exponential, spin_rate, turned};
 pub use real::Real;

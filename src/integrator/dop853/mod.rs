@@ -26,7 +26,7 @@ mod coefficients;
 mod tests;
 
 use super::own_steps::{Run, Walk};
-use super::{Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Stepper, Work};
+use super::{Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Stepper, Work};
 use crate::body::{Inertial, State, StateBlock};
 use crate::math::spin_rate;
 use coefficients::{A, C, D, E3, E5, Row};
@@ -40,10 +40,12 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Adaptive,
     order: 8,
+    models: Models::Both,
     accepts: Accepts::Any,
     damping: Damping::Exact("integrating factor: exact by itself, to the tolerance with torques"),
     reversible: false,
     keeps_momentum: true,
+    exact_free: false,
     preserves: "a free body's momentum; all else to its tolerance",
     cost: Cost {
         evaluations: 0,

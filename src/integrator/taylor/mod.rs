@@ -27,7 +27,7 @@ mod travel;
 
 use super::flight::{Elapsed, Flight};
 use super::own_steps::{Run, Walk, nowhere};
-use super::{Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Stepper, Work};
+use super::{Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Stepper, Work};
 use crate::body::{State, StateBlock};
 use four::{Four, larger};
 use law::{Law, Travel, Turning};
@@ -44,10 +44,12 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Adaptive,
     order: 20,
+    models: Models::Both,
     accepts: Accepts::Terms,
     damping: Damping::Within("a linear term of the recurrences: to the tolerance, as all else"),
     reversible: false,
     keeps_momentum: false,
+    exact_free: false,
     preserves: "nothing exactly; everything to its tolerance",
     cost: Cost {
         evaluations: 0,
