@@ -1,6 +1,7 @@
 //! What effects are made of, for methods that must know more of a torque than its value.
 
-use super::Frame;
+use super::{Frame, Wrench};
+use crate::body::State;
 
 /// A constant force at a point, or a constant torque, on one lane of a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +25,27 @@ impl Term {
     pub fn lane(&self) -> usize {
         match *self {
             Self::Force { lane, .. } | Self::Torque { lane, .. } => lane,
+        }
+    }
+
+    /// What it does to its body in this state.
+    pub fn wrench(&self, state: &State) -> Wrench {
+        match self {
+            Self::Force { force, point, .. } => {
+                let force_w = force.vector_w(state);
+                let arm_w = match *point {
+                    Frame::World(p) => p - state.x_w,
+                    Frame::Principal(p) => state.to_world(p),
+                };
+                Wrench {
+                    force_w,
+                    tau_w: arm_w.cross(&force_w),
+                }
+            }
+            Self::Torque { torque, .. } => Wrench {
+                tau_w: torque.vector_w(state),
+                ..Wrench::default()
+            },
         }
     }
 

@@ -460,6 +460,32 @@ fn has_its_order_driven(driven: Driven, t: f64) {
 }
 
 #[test]
+fn methods_with_steps_of_their_own_follow_a_driven_load() {
+    let start = State {
+        x_w: X0,
+        v_w: V0,
+        ..spinning(UnitQuaternion::identity(), Vector3::y() * OMEGA0)
+    };
+    let bodies = block(Vector3::new(0.3, 0.5, 0.6), start);
+    let mut load = Load::default();
+    load.push(Arc::new(Driven));
+    let t = 4.0;
+    let (x, v) = Driven::place(t);
+    let (omega, turned) = Driven::turn(t);
+    let q = axis_angle(Unit::new_unchecked(Vector3::y()), turned).into_inner();
+    for (method, tolerances) in methods_of_own_steps(&load, &bodies) {
+        for &tolerance in tolerances {
+            let (end, bound) = by_tolerance(method, tolerance, &load, &bodies, t);
+            let what = format!("{} at {tolerance:e}", method.info().name);
+            assert!((end.x_w - x).norm() < bound, "{what}: place");
+            assert!((end.v_w - v).norm() < bound, "{what}: velocity");
+            assert!((end.omega_w.y - omega).abs() < bound, "{what}: ω");
+            assert!(angle(end.q_wp, q) < bound, "{what}: attitude");
+        }
+    }
+}
+
+#[test]
 fn decay_alone_is_exact_at_any_rate_and_never_turns_round() {
     let omega = Vector3::new(1.0, -2.0, 0.5);
     let bodies = block(
