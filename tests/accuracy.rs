@@ -181,7 +181,7 @@ fn pushes_at_awkward_times_cost_no_method_its_order() {
             name = "b"
             mass = 2.0
             inertia = [0.5, 0.8, 1.1]
-            angular_velocity = [0.3, -1.0, 0.7]
+            angular_velocity = [0.9, -3.0, 2.1]
             [[event]]
             at = 0.12345678
             for = 0.3333333
@@ -217,7 +217,7 @@ fn pushes_at_awkward_times_cost_no_method_its_order() {
         }
         seen += 1;
         let mut errors: Vec<(f64, f64)> = Vec::new();
-        let mut step = 0.1;
+        let mut step = 0.4;
         // From where the leading term leads to where rounding shows.
         while errors.len() < 6 && step > 2e-5 {
             stated.step = step;
@@ -230,12 +230,18 @@ fn pushes_at_awkward_times_cost_no_method_its_order() {
             }
             step *= 0.5;
         }
+        if errors.len() < 3 {
+            // Rounding after one or two halvings: only of high orders.
+            assert!(method.order >= 6, "{}: {errors:?}", method.name);
+            continue;
+        }
         let last = &errors[errors.len().saturating_sub(4)..];
         let slope = (last[last.len() - 1].1 - last[0].1) / (last[last.len() - 1].0 - last[0].0);
-        // A step cut by an event costs an order one: then the slope is 1 for all. The remainders
-        // that the events leave differ from rung to rung, which moves a slope by some tenths.
+        // A force that begins within a step leaves an error of order 1, whatever the method. The
+        // remainders that the events leave differ from rung to rung, which moves a slope by some
+        // tenths of itself.
         let order = f64::from(method.order);
-        assert!(slope > order - 0.5, "{}: {slope} {errors:?}", method.name);
+        assert!(slope > 0.7 * order, "{}: {slope} {errors:?}", method.name);
     }
     assert!(seen >= 10, "{seen}");
 }

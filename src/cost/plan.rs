@@ -10,9 +10,9 @@
 //! same scene has the same plan on every machine.
 
 use super::check;
-use super::reference::{EXACT, Reference, truest};
+use super::reference::{EXACT, Reference, by_truth, truest};
 use crate::body::StateBlock;
-use crate::integrator::{Interval, Kind, METHODS, Method, Pieces, Step, Stepper};
+use crate::integrator::{Interval, Kind, Method, Pieces, Step, Stepper};
 use crate::math::angle_between;
 use crate::scene::{Scene, Stepping};
 use crate::sim::{Choice, Choose, Setting, SimError};
@@ -222,7 +222,9 @@ impl Choose for Planner {
 /// Clock steps over which candidates are compared.
 const WINDOW: usize = 48;
 /// Pieces of a clock step at most.
-const MOST_PIECES: u32 = 1 << 14;
+const MOST_PIECES: u32 = 1 << 12;
+/// Below this an error that halving the step does not lessen by a third is rounding, rad.
+const ROUNDING: f64 = 1e-9;
 /// Tolerances that are tried, each a tenth of the last.
 const LOOSEST: f64 = 1e-5;
 const TIGHTEST: f64 = 1e-16;
@@ -239,13 +241,13 @@ impl Planner {
         let allowed = share * trial.length() / self.duration;
         let truth = trial.states(best);
         let mut winner: Option<(f64, Choice, f64)> = None;
-        for method in METHODS {
-            let info = method.info();
-            if info.order < 2 || info.refuses(interval).is_some() {
+        // The truest first: a way once found bounds what others may cost.
+        for method in by_truth(interval) {
+            if method.info().order < 2 {
                 continue;
             }
             let cheaper = |cost: f64| winner.is_none_or(|(least, ..)| cost < least);
-            if let Some(found) = trial.first_within(*method, allowed, &truth, &cheaper) {
+            if let Some(found) = trial.first_within(method, allowed, &truth, &cheaper) {
                 winner = Some(found);
             }
         }
@@ -329,6 +331,7 @@ impl<'a> Trial<'a> {
             tolerance: LOOSEST,
         };
         let adaptive = method.info().kind == Kind::Adaptive;
+        let mut before = f64::INFINITY;
         loop {
             let count = self.steps.len() as f64 * f64::from(choice.pieces);
             if !adaptive && !cheaper(count * weight) {
@@ -340,14 +343,21 @@ impl<'a> Trial<'a> {
             if error <= allowed {
                 return cheaper(cost).then_some((cost, choice, error));
             }
+            if error < ROUNDING && error > 0.67 * before {
+                return None;
+            }
+            before = error;
             if adaptive {
                 choice.tolerance *= 0.1;
                 if choice.tolerance < TIGHTEST {
                     return None;
                 }
             } else {
+                let order = f64::from(method.info().order);
+                let left = f64::from(MOST_PIECES / choice.pieces);
                 choice.pieces *= 2;
-                if choice.pieces > MOST_PIECES {
+                // Not even the finest would do, by the order that the method has.
+                if choice.pieces > MOST_PIECES || error * libm::pow(left, -order) > allowed {
                     return None;
                 }
             }

@@ -416,7 +416,8 @@ impl Driven {
 
 #[test]
 fn every_method_has_its_order_in_place_and_velocities_under_a_driven_load() {
-    has_its_order_driven(Driven { d: 0.3, c: 0.6 }, 4.0);
+    // Not to 4: there the h² term of Heun's error in attitude passes through zero.
+    has_its_order_driven(Driven { d: 0.3, c: 0.6 }, 3.0);
 }
 
 #[test]
@@ -468,10 +469,10 @@ fn methods_with_steps_of_their_own_follow_a_driven_load() {
     };
     let bodies = block(Vector3::new(0.3, 0.5, 0.6), start);
     let mut load = Load::default();
-    load.push(Arc::new(Driven));
+    let driven = Driven { d: 0.3, c: 0.6 };
     let t = 4.0;
-    let (x, v) = Driven::place(t);
-    let (omega, turned) = Driven::turn(t);
+    let ((x, v), (omega, turned)) = (driven.place(t), driven.turn(t));
+    load.push(Arc::new(driven));
     let q = axis_angle(Unit::new_unchecked(Vector3::y()), turned).into_inner();
     for (method, tolerances) in methods_of_own_steps(&load, &bodies) {
         for &tolerance in tolerances {

@@ -114,6 +114,9 @@ const BETA: f64 = 0.04;
 /// Steps are cut here in units of the time in which a velocity decays: e³⁰ still leaves digits.
 const DECAY_A_STEP: f64 = 30.0;
 
+/// Roundings that the twelve products and sums of an error estimate make, of its largest slope.
+const NOISE: f64 = 16.0 * f64::EPSILON;
+
 /// Factors on v and on L or ω at some time in the step.
 #[derive(Clone, Copy)]
 struct Factors {
@@ -287,7 +290,10 @@ impl Body {
                 _ => norm(&self.y[part]).max(norm(&end[part])) + h * norm(&self.slope[part]),
             };
             let e5 = norm(&error_5[part]);
-            if e5 == 0.0 {
+            // A difference of slopes is known to some roundings of them; less is no error but noise,
+            // and a quantity that starts at zero would make it look large whatever the step.
+            let slopes = self.k[..12].iter().map(|k| norm(&k[part]));
+            if e5 <= NOISE * slopes.fold(0.0, f64::max) {
                 return 0.0;
             }
             let unit = h / (interval.tolerance * size);

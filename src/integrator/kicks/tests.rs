@@ -155,6 +155,10 @@ fn a_body_that_nothing_turns_takes_no_kicks() {
 struct Drag;
 
 impl Effect for Drag {
+    fn name(&self) -> &'static str {
+        "drag"
+    }
+
     fn add(&self, _: f64, inertial: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {
         for lane in 0..LANES {
             let s = state.get(lane);

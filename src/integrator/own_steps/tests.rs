@@ -461,3 +461,25 @@ fn a_push_at_a_point_of_the_world_or_of_the_body_is_what_a_second_method_makes_o
         }
     }
 }
+
+/// A body at rest at the origin that is pushed: what starts at zero has no size to be relative to.
+#[test]
+fn a_body_at_rest_can_be_pushed_at_the_tightest_tolerance() {
+    let force_w = Vector3::new(1.0, 2.0, -3.0);
+    let mut load = gyroscopic();
+    load.push(Arc::new(Push {
+        lane: 0,
+        force: Frame::World(force_w),
+        point: Frame::Principal(Vector3::new(0.2, 0.5, -0.4)),
+    }) as Arc<dyn Effect>);
+    let bodies = block(Vector3::new(0.5, 0.8, 1.1), rest());
+    for method in methods_for(&load, &bodies) {
+        for tolerance in [1e-9, 1e-12, 1e-15, 1.2e-16] {
+            let end = end(method, &load, &bodies, 1.0, tolerance);
+            // The force keeps its direction and the mass is 1: x = F t²/2, to roundings of a few
+            // steps or to the tolerance.
+            let gap = (end.x_w - force_w * 0.5).norm();
+            assert!(gap < 1e-14 + tolerance, "{}: {gap:e}", method.info().name);
+        }
+    }
+}
