@@ -172,7 +172,7 @@ impl Run {
             let moved = State {
                 x_w: s.x_w + s.v_w * linear.time + a_w * linear.fall,
                 v_w: s.v_w * linear.factor + a_w * linear.time,
-                ..scalar::turned(turn, s)
+                ..scalar::kept_unit(scalar::turned(turn, s))
             };
             self.set(lane, &body, moved);
         }

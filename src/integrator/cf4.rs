@@ -19,7 +19,7 @@
 
 use super::common::{HalfDecay, Rate, RateBlock, along, decayed};
 use super::one_step::OneStep;
-use super::scalar::{each, rates, turned};
+use super::scalar::{each, kept_unit, rates, turned};
 use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{State, StateBlock};
 use nalgebra::Vector3;
@@ -103,7 +103,7 @@ fn weighted(h: f64, e: impl Fn(State) -> State, y: State, [k1, k2, k3, k4]: [Rat
 fn turned_twice(h: f64, [w1, w2, w3, w4]: [Vector3<f64>; 4], y: State) -> State {
     let both = (w2 + w3) * 2.0;
     let (first, second) = (w1 * 3.0 + both - w4, both - w1 + w4 * 3.0);
-    turned(second * (h / 12.0), turned(first * (h / 12.0), y))
+    kept_unit(turned(second * (h / 12.0), turned(first * (h / 12.0), y)))
 }
 
 #[cfg(test)]

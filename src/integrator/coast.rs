@@ -7,6 +7,7 @@
 //!
 //! Undamped T = s = t and P = t²/2. Nothing accumulates: errors do not grow with the number of steps.
 
+use super::flight::{Elapsed, Flight};
 use crate::body::{Inertial, InertialBlock, LANES, State};
 use crate::effect::{Decay, Depends, Frame, Load, Term};
 use crate::exact::FreeMotion;
@@ -75,8 +76,8 @@ impl Coast {
     pub fn at(&self, t: f64, decay: Option<&Decay>) -> State {
         let gone = Passage::of(t, decay);
         let (x_w, v_w) = gone.translated(&self.start, self.a_w);
-        let left = gone.angular_left;
-        let q_wp = self.turning.attitude(gone.turning);
+        let left = gone.angular_left();
+        let q_wp = self.turning.attitude(gone.turning());
         let omega_w = match self.gyroscopic {
             true => omega_w(&self.body, q_wp, self.momentum_w * left),
             false => self.start.omega_w * left,
@@ -90,47 +91,36 @@ impl Coast {
     }
 }
 
-/// What damping makes of a stretch of time; without it, the stretch itself.
+/// A stretch of time as either velocity counts it.
 #[derive(Clone, Copy, Debug)]
 pub struct Passage {
-    /// `(1 - e^{-ch})/c`, s: the undamped time in which a free body turns as far.
-    pub turning: f64,
-    /// `e^{-ch}`: what is left of L.
-    pub angular_left: f64,
-    /// `e^{-kh}`, T and P.
-    linear_left: f64,
-    time: f64,
-    fall: f64,
+    linear: Elapsed,
+    angular: Elapsed,
 }
 
 impl Passage {
     #[inline]
     pub fn of(h: f64, decay: Option<&Decay>) -> Self {
-        match decay {
-            None => Self {
-                turning: h,
-                angular_left: 1.0,
-                linear_left: 1.0,
-                time: h,
-                fall: 0.5 * h * h,
-            },
-            Some(decay) => Self {
-                turning: decay.angular_time(h),
-                angular_left: decay.angular_factor(h),
-                linear_left: decay.linear_factor(h),
-                time: decay.linear_time(h),
-                fall: decay.linear_fall(h),
-            },
+        Self {
+            linear: Elapsed::linear(decay, h),
+            angular: Elapsed::angular(decay, h),
         }
+    }
+
+    /// `(1 - e^{-ch})/c`, s: the undamped time in which a free body turns as far.
+    pub fn turning(&self) -> f64 {
+        self.angular.first
+    }
+
+    /// `e^{-ch}`: what is left of L.
+    pub fn angular_left(&self) -> f64 {
+        self.angular.factor
     }
 
     /// Place and velocity after it under a constant acceleration.
     #[inline]
     pub fn translated(&self, s: &State, a_w: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
-        (
-            s.x_w + s.v_w * self.time + a_w * self.fall,
-            s.v_w * self.linear_left + a_w * self.time,
-        )
+        Flight::new(s, a_w).at(self.linear)
     }
 }
 

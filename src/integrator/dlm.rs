@@ -16,6 +16,7 @@
 //! Numerical Integration, VII.5.
 
 use super::coast::{Passage, omega_w};
+use super::own_steps::nowhere;
 use super::{
     Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Step, Stepper, Work,
 };
@@ -53,16 +54,19 @@ impl Method for Dlm {
     }
 
     fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
-        let mut momentum_w = Vector3Lanes::default();
-        for lane in 0..LANES {
-            let start = state.get(lane);
+        // A body for which it has no motion shall not be taken for one.
+        let refused = INFO.refuses(&interval).is_some();
+        let (mut momentum_w, mut block) = (Vector3Lanes::default(), *state);
+        for lane in 0..interval.bodies.min(LANES) {
+            let start = if refused { nowhere() } else { state.get(lane) };
+            block.set(lane, start);
             momentum_w.set(lane, interval.inertial.get(lane).momentum_w(&start));
         }
         Box::new(Run {
             asked: interval.load.wrench(t, &interval.inertial, state),
             interval: interval.into(),
             momentum_w,
-            block: *state,
+            block,
             steps: 0,
         })
     }
@@ -127,11 +131,11 @@ fn drift(
 ) {
     for lane in 0..LANES {
         let (mut state, l) = (block.get(lane), momentum_w.get(lane));
-        let rates = inertial.get(lane).inv_moments * by.turning;
+        let rates = inertial.get(lane).inv_moments * by.turning();
         (state.x_w, state.v_w) = by.translated(&state, Vector3::zeros());
         state.q_wp = five_turns(rates, state.q_wp, l);
         block.set(lane, state);
-        momentum_w.set(lane, l * by.angular_left);
+        momentum_w.set(lane, l * by.angular_left());
     }
 }
 

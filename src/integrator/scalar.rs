@@ -47,13 +47,19 @@ pub fn applied(
     }
 }
 
-/// The state turned by the rotation vector `v` (world, rad): `q ← exp(v) q`. A product of unit
-/// quaternions is one but for rounding, which a step of Newton's towards `1/|q|` takes off, so that it
-/// does not add up over a million steps.
+/// The state turned by the rotation vector `v` (world, rad): `q ← exp(v) q`.
 pub fn turned(v: Vector3<f64>, s: State) -> State {
-    let q = crate::math::exponential(v) * s.q_wp;
     State {
-        q_wp: q * (1.5 - 0.5 * q.norm_squared()),
+        q_wp: crate::math::exponential(v) * s.q_wp,
+        ..s
+    }
+}
+
+/// The state with `|q| = 1` again. A product of unit quaternions is one but for rounding; a step of
+/// Newton's towards `1/|q|` takes that off, so that it does not add up over a million steps.
+pub fn kept_unit(s: State) -> State {
+    State {
+        q_wp: s.q_wp * (1.5 - 0.5 * s.q_wp.norm_squared()),
         ..s
     }
 }

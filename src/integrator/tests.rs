@@ -767,9 +767,15 @@ fn methods_that_say_so_keep_the_momentum_of_a_free_body_over_a_million_steps() {
     for method in fixed_methods(&load, &bodies).filter(|method| method.info().keeps_momentum) {
         let end = advance(method, &load, &bodies, 1e4, 1_000_000);
         let after = inertials.get(0).momentum_w(&end);
-        // L is kept as it is; ω = R I⁻¹ Rᵀ L and back are four rotations by a q of unit length to rounding.
         let gap = (after - before).norm() / before.norm();
-        assert!(gap < 5e-15, "{}: {gap}", method.info().name);
+        let name = method.info().name;
+        let bound = match name.starts_with("buss") {
+            // From ω to L and back at every step, some roundings each: a random walk of a million.
+            true => 1e-12,
+            // L is kept as it is; ω = R I⁻¹ Rᵀ L and back are four rotations by a q of unit length.
+            false => 5e-15,
+        };
+        assert!(gap < bound, "{name}: {gap}");
         seen += 1;
     }
     assert!(seen > 4);

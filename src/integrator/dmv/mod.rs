@@ -18,6 +18,7 @@ mod preprocessed;
 pub use preprocessed::Preprocessed;
 
 use super::coast::{Passage, coasting, omega_w};
+use super::own_steps::nowhere;
 use super::{
     Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Step, Stepper, Work,
 };
@@ -69,15 +70,17 @@ impl Method for Dmv {
     }
 
     fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+        // A body for which it has no motion shall not be taken for one.
+        let refused = self.0.refuses(&interval).is_some();
         let forces = coasting(&interval.load, &interval.inertial);
         let bodies = (0..interval.bodies.min(LANES)).map(|lane| {
-            let (body, start) = (interval.inertial.get(lane), state.get(lane));
+            let body = interval.inertial.get(lane);
+            let start = if refused { nowhere() } else { state.get(lane) };
             Body {
                 inertial: body,
                 start,
                 momentum_w: body.momentum_w(&start),
-                // A force that is not constant is refused; what is not a number is seen by all.
-                a_w: forces[lane].unwrap_or(Vector3::repeat(f64::NAN)),
+                a_w: forces[lane].unwrap_or_default(),
                 moments: Preprocessed::new(body.moments, self.0.order),
                 q_wp: start.q_wp,
             }
@@ -118,8 +121,8 @@ struct Run {
 impl Run {
     fn step(&mut self, step: &Step) {
         let decay = self.decay.as_ref();
-        let left = Passage::of(step.from - self.set_out, decay).angular_left;
-        let s = Passage::of(step.h, decay).turning;
+        let left = Passage::of(step.from - self.set_out, decay).angular_left();
+        let s = Passage::of(step.h, decay).turning();
         for body in &mut self.bodies {
             body.q_wp = (body.moments).attitude(s, body.q_wp, body.momentum_w * left);
         }
@@ -139,7 +142,7 @@ impl Body {
             omega_w: omega_w(
                 &self.inertial,
                 self.q_wp,
-                self.momentum_w * gone.angular_left,
+                self.momentum_w * gone.angular_left(),
             ),
         }
     }

@@ -30,6 +30,7 @@ mod turning;
 pub use composition::{ABA864, ABA1064, Composition, ORDER8, RKN4, RKN6, STRANG};
 
 use super::coast::{Coast, Passage, coasting, omega_w};
+use super::own_steps::nowhere;
 use super::{Interval, Method, MethodInfo, Step, Stepper, Work};
 use crate::body::{Inertial, State, StateBlock};
 use crate::effect::WrenchBlock;
@@ -47,11 +48,16 @@ impl Method for Kicks {
     }
 
     fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+        // A load that would cost it its order shall not be taken in silence.
+        let refused = self.0.info.refuses(&interval).is_some();
         let gyroscopic = interval.load.gyroscopic();
         let forces = coasting(&interval.load, &interval.inertial);
+        let mut block = *state;
         let (mut coasting, mut kicked) = (Vec::new(), Vec::new());
         for (lane, force) in forces.iter().enumerate().take(interval.bodies) {
-            let (inertial, start) = (interval.inertial.get(lane), state.get(lane));
+            let inertial = interval.inertial.get(lane);
+            let start = if refused { nowhere() } else { state.get(lane) };
+            block.set(lane, start);
             match *force {
                 Some(a_w) => coasting.push((lane, Coast::new(inertial, gyroscopic, start, a_w))),
                 None => kicked.push(Kicked {
@@ -71,7 +77,7 @@ impl Method for Kicks {
             coasting: coasting.into(),
             set_out: t,
             kicked,
-            block: *state,
+            block,
             ahead: 0.0,
             now: t,
             asked: None,
@@ -136,8 +142,8 @@ impl Kicked {
     #[inline]
     fn drift(&mut self, by: &Passage, s: &mut State) {
         (s.x_w, s.v_w) = by.translated(s, Vector3::zeros());
-        s.q_wp = self.turning.attitude(by.turning, s.q_wp, self.stays_w);
-        self.stays_w *= by.angular_left;
+        s.q_wp = self.turning.attitude(by.turning(), s.q_wp, self.stays_w);
+        self.stays_w *= by.angular_left();
     }
 
     fn omega_w(&self, s: &State) -> Vector3<f64> {

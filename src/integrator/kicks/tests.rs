@@ -274,3 +274,25 @@ fn the_drift_is_exact_to_rounding_where_the_discrete_body_stands_in() {
     let used = worst_drift(turning::DISCRETE);
     assert!(used < 1.5e-15, "{used}");
 }
+
+#[test]
+fn a_load_that_was_refused_is_never_followed_in_silence() {
+    let (bodies, _, _) = heavy_top();
+    let mut dragged = gyroscopic();
+    dragged.push(Arc::new(Drag));
+    let refused: [(&dyn Method, &Load); 3] = [
+        (&Kicks(&RKN4), &dragged),
+        (&crate::integrator::dlm::Dlm, &Load::default()),
+        (&crate::integrator::dmv::DMV4, &dragged),
+    ];
+    for (method, load) in refused {
+        assert!(
+            method
+                .info()
+                .refuses(&interval(load, bodies.0, 1.0))
+                .is_some()
+        );
+        let end = advance(method, load, &bodies, 1.0, 4);
+        assert!(!end.is_finite(), "{}", method.info().name);
+    }
+}
