@@ -34,6 +34,9 @@ pub struct Arguments {
     /// [default: the scene's name with -cost, in the current folder].
     #[arg(long, value_name = "PREFIX")]
     out: Option<PathBuf>,
+    /// Print every setting that was measured.
+    #[arg(long)]
+    all: bool,
     /// Print the table alone: no plots, no recording.
     #[arg(long, conflicts_with = "out")]
     table: bool,
@@ -80,7 +83,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     } else if arguments.csv {
         print::out(csv(&cost).trim_end())?;
     } else {
-        print::out(&table(&scene, &cost, &advice))?;
+        print::out(&table(&scene, &cost, &advice, arguments.all))?;
     }
     if !arguments.table {
         files(arguments, &scene, &cost, &advice)?;
@@ -169,7 +172,29 @@ fn weigh(scene: &Scene, chooser: &mut dyn Choose) -> Option<u64> {
     Some(recorder.finish().ok()?.bytes)
 }
 
-fn table(scene: &Scene, cost: &Cost, advice: &Advice<'_>) -> String {
+/// Accuracies for which the first table says what each method costs, rad.
+const ACCURACIES: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
+
+fn table(scene: &Scene, cost: &Cost, advice: &Advice<'_>, all: bool) -> String {
+    let mut text = format!(
+        "{}\n{} s; attitudes compared at {} instants with {}\n\n\
+         Wall time per simulated second, and the step or tolerance, for an attitude error of at most\n",
+        scene.title,
+        short(cost.duration),
+        cost.instants,
+        truth(cost)
+    );
+    text += &by_accuracy(cost);
+    text += match all {
+        true => "\n\nEvery setting (* no other is both cheaper and truer)\n",
+        false => {
+            "\n\nNo other setting is both cheaper and truer than these (--all: every setting)\n"
+        }
+    };
+    let mut shown: Vec<&Rung> = cost.rungs.iter().filter(|r| all || r.on_front).collect();
+    if !all {
+        shown.sort_by(|a, b| a.time.median.total_cmp(&b.time.median));
+    }
     let header = [
         "",
         "method",
@@ -182,21 +207,41 @@ fn table(scene: &Scene, cost: &Cost, advice: &Advice<'_>) -> String {
         "evaluations per s",
         "recording",
     ];
-    let rows = cost.rungs.iter().map(row).collect();
-    let mut text = format!(
-        "{}\n{} s; attitudes compared at {} instants with {}\n",
-        scene.title,
-        short(cost.duration),
-        cost.instants,
-        truth(cost)
-    );
-    text += &print::table(&header, rows);
-    text += "\n* no other setting is both cheaper and truer\n";
+    text += &print::table(&header, shown.into_iter().map(row).collect());
+    text += "\n";
     for (method, why) in &cost.refused {
         text += &format!("not {method}: {why}\n");
     }
     text += &format!("\n{advice}");
     text
+}
+
+/// A line a method, a column an accuracy: the cheapest setting that keeps to it.
+fn by_accuracy(cost: &Cost) -> String {
+    let mut methods: Vec<&str> = cost.rungs.iter().map(|rung| rung.method).collect();
+    methods.dedup();
+    let line = |method: &&str| {
+        let cell = |accuracy: f64| {
+            let rung = cost.cheapest(accuracy, |rung| rung.method == *method);
+            rung.map_or("–".to_owned(), |rung| match setting(rung) {
+                None => cost::time(rung.time.median),
+                Some(setting) => format!("{} ({setting})", cost::time(rung.time.median)),
+            })
+        };
+        let mut cells = vec![(*method).to_owned()];
+        cells.extend(ACCURACIES.map(cell));
+        cells
+    };
+    let mut header = vec!["method".to_owned()];
+    header.extend(ACCURACIES.map(|accuracy| format!("{accuracy:e} rad")));
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    print::table(&header, methods.iter().map(line).collect())
+}
+
+/// The step or the tolerance; none where there is neither.
+fn setting(rung: &Rung) -> Option<String> {
+    let step = rung.step.map(cost::time);
+    step.or(rung.tolerance.map(|tolerance| format!("{tolerance:.0e}")))
 }
 
 /// What the runs were compared with, and how far that can be believed.
@@ -214,11 +259,7 @@ fn truth(cost: &Cost) -> String {
 
 fn row(rung: &Rung) -> Vec<String> {
     let front = if rung.on_front { "*" } else { "" };
-    let setting = match (rung.step, rung.tolerance) {
-        (Some(step), _) => cost::time(step),
-        (None, Some(tolerance)) => format!("{tolerance:.0e}"),
-        (None, None) => "any time at once".to_owned(),
-    };
+    let setting = setting(rung).unwrap_or_else(|| "any time at once".to_owned());
     let lost = !rung.error.is_finite();
     let number = |x: f64| if lost { "lost".to_owned() } else { two(x) };
     let Spread {
@@ -299,17 +340,17 @@ fn files(
         name.push(ending);
         PathBuf::from(name)
     };
-    let title = format!("{}: what accuracy costs", scene.title);
+    let title = format!("What accuracy costs: {}", scene.title);
     let (svg, png) = (with(".svg"), with(".png"));
     plot::svg(cost, &title, &svg)?;
     plot::png(cost, &title, &png)?;
     let recording = with(".rrd");
     record(scene, cost, advice, &recording)?;
     print::err(&format!(
-        "{}, {}, {1}\nto open it: torquescope view {}",
+        "{}, {}, {recording}\nto open it: torquescope view {recording}",
         svg.display(),
         png.display(),
-        recording.display()
+        recording = recording.display()
     ));
     Ok(())
 }
@@ -327,7 +368,7 @@ fn record(scene: &Scene, cost: &Cost, advice: &Advice<'_>, path: &Path) -> anyho
     let simulation = Simulation::new(&race.scene);
     let subjects = simulation.subjects().to_vec();
     let mut heading = Heading::of(&race.scene, &simulation);
-    heading.title = format!("{}: what accuracy costs", scene.title);
+    heading.title = format!("What accuracy costs: {}", scene.title);
     heading.notes = notes(scene, cost, advice, &race);
     heading.price = Some(cost.clone());
     let mut recorder = Recorder::create(path, &heading, &subjects)?;

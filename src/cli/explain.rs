@@ -55,7 +55,7 @@ fn row(planned: &Planned, subjects: &[Subject]) -> Vec<String> {
         planned.choice.method.info().name.to_owned(),
         match planned.step {
             Some(step) => cost::time(step),
-            None => "its own".to_owned(),
+            None => planned.choice.method.info().kind.describe().to_owned(),
         },
         planned
             .expected

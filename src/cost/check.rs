@@ -3,9 +3,10 @@
 use crate::math::angle_between;
 use crate::scene::{Scene, StateRate};
 use crate::sim::{Choose, Outcome, SimError, Simulation};
-use crate::trace::{Instant, Note, Sample, Sink, SinkError, Subject, Track};
+use crate::trace::{Instant, Note, Sample, Sink, SinkError, StreamSet, Subject, Track};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
+use std::time::Duration;
 
 /// What is compared of a body at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,6 +90,8 @@ impl Sink for Checks {
 /// A run, and its end, kept for comparison.
 pub struct Run {
     pub outcome: Outcome,
+    /// Wall time from the first step to the last, looking at the instants included.
+    pub took: Duration,
     pub kept: Vec<(Instant, Vec<Checked>)>,
     pub end: Vec<Checked>,
 }
@@ -97,12 +100,15 @@ pub fn run(scene: &Scene, chooser: &mut dyn Choose) -> Result<Run, SimError> {
     let simulation = Simulation::new(scene).on_threads(1);
     let subjects = simulation.subjects().to_vec();
     let mut checks = Checks::new(scene, &subjects);
+    let start = std::time::Instant::now();
     let (outcome, done) = simulation.run_by(chooser, &mut checks);
+    let took = start.elapsed();
     done?;
     let ends = subjects.iter().zip(&outcome.end);
     let end = ends.map(|(s, m)| Checked::of(s, m)).collect();
     Ok(Run {
         outcome,
+        took,
         kept: checks.kept,
         end,
     })
@@ -114,6 +120,7 @@ pub fn bare(scene: &Scene, step: f64, rate: f64) -> Scene {
     scene.step = step;
     scene.record.rate = rate;
     scene.record.state = StateRate::PerSecond(rate);
+    scene.record.streams = StreamSet::none();
     scene
 }
 

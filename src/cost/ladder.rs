@@ -27,8 +27,8 @@ pub struct Rung {
     pub step: Option<f64>,
     /// For a method that chooses its own.
     pub tolerance: Option<f64>,
-    /// The largest angle from the true attitude at the instants compared, rad; infinite where a
-    /// state was lost.
+    /// The largest angle from the true attitude at the instants compared, rad, and not less than
+    /// that is known to; infinite where a state was lost.
     pub error: f64,
     /// The largest difference from the true kinetic energy, as a part of its largest.
     pub energy_drift: f64,
@@ -218,7 +218,9 @@ impl Climb<'_> {
         while times.len() < self.ladder.repeats || (spent < ENOUGH && times.len() < 50) {
             let start = Instant::now();
             let once = check::run(&scene, &mut Stated(choice));
-            let took = start.elapsed();
+            let took = once
+                .as_ref()
+                .map_or_else(|_| start.elapsed(), |run| run.took);
             spent += took;
             times.push(took.as_secs_f64() / scene.duration);
             let lost = once.is_err();
@@ -231,7 +233,9 @@ impl Climb<'_> {
             Ok(run) => {
                 let truth = &self.reference.run;
                 (
-                    run.angle(truth),
+                    // What is nearer to the reference than that is to the truth is not nearer to
+                    // the truth for it.
+                    run.angle(truth).max(self.reference.uncertainty),
                     run.energy_drift(truth),
                     run.momentum_drift(truth),
                     run.outcome.work,
@@ -284,7 +288,7 @@ impl Spread {
 }
 
 /// An attitude more than this off (rad) says nothing about a motion.
-const LOST: f64 = 1.0;
+pub const LOST: f64 = 1.0;
 
 /// Marks the rungs to which no other is both cheaper and truer.
 fn mark_front(rungs: &mut [Rung]) {
@@ -310,15 +314,17 @@ pub struct Advice<'a> {
 }
 
 impl Cost {
+    /// The cheapest rung of some kind that is off by at most `accuracy` rad.
+    pub fn cheapest(&self, accuracy: f64, of: impl Fn(&Rung) -> bool) -> Option<&Rung> {
+        let good = self.rungs.iter().filter(|r| r.error <= accuracy && of(r));
+        good.min_by(|a, b| a.time.median.total_cmp(&b.time.median))
+    }
+
     pub fn advice(&self, accuracy: f64) -> Advice<'_> {
-        let cheapest = |of: &dyn Fn(&Rung) -> bool| {
-            let good = self.rungs.iter().filter(|r| r.error <= accuracy && of(r));
-            good.min_by(|a, b| a.time.median.total_cmp(&b.time.median))
-        };
         Advice {
             accuracy,
-            best: cheapest(&|_| true),
-            usual: cheapest(&|rung| rung.method == DEFAULT_METHOD),
+            best: self.cheapest(accuracy, |_| true),
+            usual: self.cheapest(accuracy, |rung| rung.method == DEFAULT_METHOD),
         }
     }
 

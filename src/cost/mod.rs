@@ -10,7 +10,7 @@ mod race;
 mod reference;
 
 pub use check::Checked;
-pub use ladder::{Advice, Cost, Ladder, Progress, Rung, Spread, time};
+pub use ladder::{Advice, Cost, LOST, Ladder, Progress, Rung, Spread, time};
 pub use plan::{Plan, PlanError, Planned};
 pub use race::Race;
 pub use reference::{EXACT, Reference};

@@ -1,6 +1,6 @@
 //! The work-precision plot: error against time, both logarithmic, a line a method.
 
-use super::ladder::{Cost, Rung};
+use super::ladder::{Cost, LOST, Rung};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::FontStyle;
@@ -95,7 +95,7 @@ const FLOOR: f64 = 1e-16;
 
 fn lines(cost: &Cost) -> Vec<Line<'_>> {
     let mut lines: Vec<Line<'_>> = Vec::new();
-    for rung in cost.rungs.iter().filter(|rung| rung.error.is_finite()) {
+    for rung in cost.rungs.iter().filter(|rung| rung.error < LOST) {
         match lines.iter_mut().find(|line| line.method == rung.method) {
             Some(line) => line.rungs.push(rung),
             None => lines.push(Line {

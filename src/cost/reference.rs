@@ -3,7 +3,7 @@
 //! the first can be believed.
 
 use super::check::{self, Run};
-use crate::integrator::{Interval, Kind, METHODS, Method};
+use crate::integrator::{Accepts, Interval, Kind, METHODS, Method};
 use crate::scene::Scene;
 use crate::sim::{Choice, Choose, Setting, SimError};
 
@@ -88,7 +88,8 @@ pub fn by_truth(interval: &Interval) -> Vec<&'static dyn Method> {
         let info = method.info();
         match info.kind {
             Kind::Closed => (0, 0),
-            Kind::Adaptive => (1, 0),
+            // One made for fewer loads is the truer.
+            Kind::Adaptive => (1, u32::from(info.accepts == Accepts::Any)),
             Kind::Fixed => (2, u32::MAX - info.order),
         }
     });

@@ -142,7 +142,7 @@ impl MethodInfo {
                 "knows the recurrences of constant forces at points and constant torques alone, and something else acts here",
             ),
             Accepts::Free if depends.torque => {
-                refusal("is the motion of a body that no torque turns, and a torque acts here")
+                refusal("is for bodies that no torque turns, and a torque acts here")
             }
             Accepts::Free if depends != Depends::NOTHING => {
                 refusal("takes forces that are constant, and one here is not")

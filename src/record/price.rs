@@ -3,7 +3,7 @@
 use super::RecordError;
 use super::look;
 use super::rrd::RrdFile;
-use crate::cost::{Cost, Rung};
+use crate::cost::{Cost, LOST, Rung};
 use rerun::archetypes::{LineStrips2D, Points2D};
 use rerun::components::Radius;
 
@@ -22,7 +22,7 @@ fn place(error: f64, time: f64) -> [f32; 2] {
 }
 
 fn shown(rung: &&Rung) -> bool {
-    rung.error.is_finite()
+    rung.error < LOST
 }
 
 pub fn write(file: &mut RrdFile, cost: &Cost) -> Result<(), RecordError> {
@@ -76,12 +76,14 @@ fn grid(file: &mut RrdFile, rungs: &[&Rung]) -> Result<(), RecordError> {
     for error in errors.0..=errors.1 {
         lines.push([at(error, times.0), at(error, times.1)]);
         if error % 2 == 0 {
-            labels.push((at(error, times.0), format!("1e{error} rad")));
+            let [x, y] = at(error, times.0);
+            labels.push(([x, y + 0.5], format!("1e{error} rad")));
         }
     }
     for time in times.0..=times.1 {
         lines.push([at(errors.0, time), at(errors.1, time)]);
-        labels.push((at(errors.0, time), format!("1e{time} s a second")));
+        let [x, y] = at(errors.0, time);
+        labels.push(([x - 1.2, y], format!("1e{time} s a second")));
     }
     let lines = LineStrips2D::new(lines)
         .with_colors([look::GRID])

@@ -4,7 +4,7 @@ use super::Jump;
 use super::choose::{Choose, Setting};
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
 use crate::effect::{Frame, Load, Push, Term, WrenchBlock};
-use crate::integrator::{Interval, Method, Pieces, Refusal, Step, Stepper, Work};
+use crate::integrator::{Interval, Kind, Method, Pieces, Refusal, Step, Stepper, Work};
 use crate::mass::tensor;
 use crate::scene::{Body, Event, Framed, Scene, lasting};
 use crate::trace::{Deviation, Motion, PointForce, Sample, Subject};
@@ -29,6 +29,8 @@ pub struct Group {
     kept: Vec<StateBlock>,
     /// By name.
     pub method: &'static str,
+    /// Whether it chooses its own steps.
+    pub steps_by_itself: bool,
     /// What the steppers before this one did.
     done: Work,
 }
@@ -99,6 +101,7 @@ impl Group {
             before: None,
             kept: Vec::new(),
             method: "",
+            steps_by_itself: false,
             done: Work::default(),
         };
         for (lane, body) in bodies.iter().enumerate() {
@@ -123,6 +126,7 @@ impl Group {
         interval.tolerance = choice.tolerance;
         self.done = self.work();
         self.method = choice.method.info().name;
+        self.steps_by_itself = choice.method.info().kind == Kind::Adaptive;
         let stepper = choice.method.start(interval, t, &self.state);
         self.stepper = Some(match choice.pieces {
             1 => stepper,

@@ -380,6 +380,9 @@ impl<'s> Simulation<'s> {
         /// Radians a step, beyond which a term of second order in ω h is no longer small.
         const FAR: f64 = 0.1;
         let group = self.group_of(body);
+        if group.steps_by_itself {
+            return "no step of its own was short enough to follow the motion; a force or torque there grows without bound, or the tolerance is below what 64-bit numbers resolve".to_owned();
+        }
         let turned = group.turn_in_a_step(body, self.scene.step);
         if group.is_gyroscopic() && turned > FAR {
             let turned = short(turned);
