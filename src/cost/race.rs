@@ -78,13 +78,16 @@ fn finishes(scene: &Scene, method: &'static dyn Method) -> Result<bool, SimError
     }
 }
 
-/// The body once for every runner, in a row along x.
+/// The body once for every runner, in rows one above the other, the truth at the upper left.
 fn lined_up(alone: &Scene, runners: &[Option<Choice>], apart: f64) -> Scene {
     let mut scene = alone.clone();
     scene.bodies.clear();
     scene.events.clear();
+    // Wider than high, as screens are.
+    let columns = (2.0 * runners.len() as f64).sqrt().ceil().max(1.0) as usize;
     for (k, runner) in runners.iter().enumerate() {
-        let shift_w = Vector3::x() * (apart * k as f64);
+        let (row, column) = ((k / columns) as f64, (k % columns) as f64);
+        let shift_w = Vector3::new(column, -row, 0.0) * apart;
         let name = runner.map_or("true", |choice| choice.method.info().name);
         for body in &alone.bodies {
             let mut body = body.clone();
