@@ -46,11 +46,14 @@ pub struct Load {
     gyroscopic: bool,
     effects: Vec<Arc<dyn Effect>>,
     decay: Option<Decay>,
+    /// What is applied, where that is known never to change.
+    constant: Option<WrenchBlock>,
 }
 
 impl Load {
     pub fn push(&mut self, effect: Arc<dyn Effect>) {
         self.effects.push(effect);
+        self.constant = None;
     }
 
     pub fn set_decay(&mut self, decay: Decay) {
@@ -85,6 +88,25 @@ impl Load {
         self.decay.as_ref()
     }
 
+    /// Takes the sum of what is applied once and for all, where it depends on nothing: from here on
+    /// the load is one on these bodies alone.
+    pub fn settle(&mut self, t: f64, inertial: &InertialBlock, state: &StateBlock) {
+        self.constant = None;
+        if self.applies() && self.depends(inertial).is_constant() {
+            self.constant = self.wrench(t, inertial, state);
+        }
+    }
+
+    /// What is applied, where it was found to be constant ([`Load::settle`]).
+    pub fn constant(&self) -> Option<&WrenchBlock> {
+        self.constant.as_ref()
+    }
+
+    /// Whether what is applied may change: neither nothing nor found to be constant.
+    pub fn varies(&self) -> bool {
+        self.applies() && self.constant.is_none()
+    }
+
     /// The sum of what is applied, in the order the effects were added: without the gyroscopic
     /// term, without decay. `None` where nothing is.
     pub fn wrench(
@@ -93,12 +115,23 @@ impl Load {
         inertial: &InertialBlock,
         state: &StateBlock,
     ) -> Option<WrenchBlock> {
-        if self.effects.is_empty() {
-            return None;
+        self.wrench_in(&mut None, t, inertial, state).copied()
+    }
+
+    /// The same without a copy: what was found to be constant, or a sum that is made in `room`.
+    pub fn wrench_in<'a>(
+        &'a self,
+        room: &'a mut Option<WrenchBlock>,
+        t: f64,
+        inertial: &InertialBlock,
+        state: &StateBlock,
+    ) -> Option<&'a WrenchBlock> {
+        if !self.varies() {
+            return self.constant();
         }
-        let mut wrench = WrenchBlock::default();
+        let wrench = room.insert(WrenchBlock::default());
         for effect in &self.effects {
-            effect.add(t, inertial, state, &mut wrench);
+            effect.add(t, inertial, state, wrench);
         }
         Some(wrench)
     }
@@ -143,5 +176,76 @@ impl Frame {
             Frame::World(p) => p,
             Frame::Principal(p) => state.x_w + state.to_world(p),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::Inertial;
+    use crate::effect::{Couple, Push};
+    use nalgebra::Quaternion;
+
+    fn body() -> (InertialBlock, StateBlock) {
+        let (mut inertial, mut state) = (InertialBlock::default(), StateBlock::default());
+        let moments = Vector3::new(1.0, 2.0, 2.5);
+        let body = Inertial {
+            mass: 2.0,
+            inv_mass: 0.5,
+            moments,
+            inv_moments: moments.map(|i| 1.0 / i),
+            centre_p: Vector3::zeros(),
+        };
+        inertial.set(0, body);
+        let at = State {
+            x_w: Vector3::new(1.0, -2.0, 0.5),
+            v_w: Vector3::new(0.1, 0.2, 0.3),
+            q_wp: Quaternion::new(0.5, 0.5, -0.5, 0.5),
+            omega_w: Vector3::new(1.0, 2.0, 3.0),
+        };
+        state.set(0, at);
+        (inertial, state)
+    }
+
+    #[test]
+    fn what_depends_on_nothing_is_summed_once_and_is_the_same_sum() {
+        let (inertial, state) = body();
+        let mut load = Load::default();
+        load.settle(0.0, &inertial, &state);
+        assert!(!load.varies() && load.constant().is_none());
+        load.push(Arc::new(Push {
+            lane: 0,
+            force: Frame::World(Vector3::new(0.1, -0.2, 0.7)),
+            point: Frame::Principal(Vector3::zeros()),
+        }));
+        for torque in [Vector3::new(0.1, 0.2, 0.3), Vector3::new(-0.7, 0.4, 0.2)] {
+            let torque = Frame::World(torque);
+            load.push(Arc::new(Couple { lane: 0, torque }));
+        }
+        assert!(load.varies());
+        let each_time = load.wrench(3.0, &inertial, &state).unwrap().get(0);
+        load.settle(0.0, &inertial, &StateBlock::default());
+        assert!(!load.varies());
+        let once = load.wrench(3.0, &inertial, &state).unwrap().get(0);
+        assert_eq!(once, each_time);
+        assert_eq!(load.constant().map(|wrench| wrench.get(0)), Some(once));
+    }
+
+    #[test]
+    fn what_turns_with_the_body_is_asked_for_each_time() {
+        let (inertial, state) = body();
+        let mut load = Load::default();
+        let torque = Frame::World(Vector3::x());
+        load.push(Arc::new(Couple { lane: 0, torque }));
+        load.settle(0.0, &inertial, &state);
+        assert!(!load.varies());
+        // One more, and the sum is no longer what it was.
+        let torque = Frame::Principal(Vector3::x());
+        load.push(Arc::new(Couple { lane: 0, torque }));
+        assert!(load.varies());
+        load.settle(0.0, &inertial, &state);
+        assert!(load.varies() && load.constant().is_none());
+        let tau_w = load.wrench(0.0, &inertial, &state).unwrap().get(0).tau_w;
+        assert_eq!(tau_w, Vector3::x() + state.get(0).to_world(Vector3::x()));
     }
 }

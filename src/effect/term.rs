@@ -106,6 +106,11 @@ impl Depends {
         velocity: true,
     };
 
+    /// Whether the sum of the forces and torques stays as it is.
+    pub fn is_constant(self) -> bool {
+        !(self.time || self.place || self.velocity)
+    }
+
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self {

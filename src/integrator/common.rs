@@ -1,8 +1,52 @@
 //! What several kernels share: states as vectors, accelerations, damping.
 
+use super::{Interval, Step};
 use crate::body::{Inertial, LANES, State, StateBlock};
 use crate::effect::{Decay, Load, WrenchBlock};
+use multiversion::multiversion;
 use nalgebra::Vector3;
+
+/// Calls a kernel with the [`Forces`] that a load has at one time and state: `wrench` is an
+/// `Option<&WrenchBlock>`.
+macro_rules! with_forces {
+    ($load:expr, $wrench:expr, |$forces:ident| $work:expr) => {
+        match ($wrench, $load.gyroscopic()) {
+            (None, false) => {
+                let $forces = $crate::integrator::common::Coasting::<false>;
+                $work
+            }
+            (None, true) => {
+                let $forces = $crate::integrator::common::Coasting::<true>;
+                $work
+            }
+            (Some(wrench), false) => {
+                let $forces = $crate::integrator::common::Applied::<false>(wrench);
+                $work
+            }
+            (Some(wrench), true) => {
+                let $forces = $crate::integrator::common::Applied::<true>(wrench);
+                $work
+            }
+        }
+    };
+}
+pub(super) use with_forces;
+
+/// So few bodies are sooner stepped one by one than as a block of eight.
+pub const FEW: usize = 2;
+
+/// Does the same for every lane that holds a body: for [`FEW`] one by one, else for all eight, which
+/// is as many rounds as the compiler knows beforehand, so that it makes vector code of them.
+macro_rules! each_lane {
+    ($bodies:expr, |$lane:ident| $work:block) => {
+        if $bodies <= $crate::integrator::common::FEW {
+            for $lane in 0..$bodies $work
+        } else {
+            for $lane in 0..$crate::body::LANES $work
+        }
+    };
+}
+pub(super) use each_lane;
 
 /// A rate of change has the components of a state: x', v', q', ω'.
 pub type Rate = State;
@@ -104,6 +148,24 @@ impl HalfDecay {
             angular: decay.angular_factor(half),
         })
     }
+
+    /// Over so many half steps: none, one or two.
+    pub fn times(self, times: u8) -> Self {
+        let power = |factor: f64| match times {
+            0 => 1.0,
+            1 => factor,
+            _ => factor * factor,
+        };
+        Self {
+            linear: power(self.linear),
+            angular: power(self.angular),
+        }
+    }
+
+    #[inline(always)]
+    pub fn on(self, y: State) -> State {
+        decayed(y, self.linear, self.angular)
+    }
 }
 
 /// The same state with an attitude of unit length.
@@ -115,6 +177,89 @@ pub fn normalised(y: State) -> State {
     }
 }
 
+/// A step of one body under forces that are asked for once.
+pub trait Kernel: Copy {
+    fn stepped(self, h: f64, lane: usize, forces: impl Forces, body: &Inertial, s: State) -> State;
+}
+
+/// Takes steps by a kernel: forces as they are at the start of each, decay after it.
+pub fn march<K: Kernel>(
+    kernel: K,
+    steps: &[Step],
+    interval: &Interval,
+    state: &mut StateBlock,
+    kept: &mut Vec<StateBlock>,
+) {
+    let load = &interval.load;
+    if !load.varies() {
+        with_forces!(load, load.constant(), |forces| stretch(
+            kernel, steps, forces, interval, state, kept
+        ));
+        return;
+    }
+    let mut room = None;
+    for step in steps.chunks(1) {
+        let wrench = load.wrench_in(&mut room, step[0].from, &interval.inertial, state);
+        with_forces!(load, wrench, |forces| stretch(
+            kernel, step, forces, interval, state, kept
+        ));
+    }
+}
+
+/// Takes steps under forces that stay: all of them in code that was chosen once for the processor.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn stretch<K: Kernel, F: Forces>(
+    kernel: K,
+    steps: &[Step],
+    forces: F,
+    interval: &Interval,
+    state: &mut StateBlock,
+    kept: &mut Vec<StateBlock>,
+) {
+    let inertial = &interval.inertial;
+    let mut decay = Decaying::new(interval.load.decay());
+    for step in steps {
+        each_lane!(interval.bodies, |lane| {
+            let (body, s) = (inertial.get(lane), state.get(lane));
+            state.set(lane, kernel.stepped(step.h, lane, forces, &body, s));
+        });
+        if let Some((linear, angular)) = decay.factors(step.h) {
+            for lane in 0..LANES {
+                state.set(lane, decayed(state.get(lane), linear, angular));
+            }
+        }
+        if step.keep {
+            kept.push(*state);
+        }
+    }
+}
+
+/// The factors of a decay over a step, which are those of the step before where it is as long.
+struct Decaying<'d> {
+    decay: Option<&'d Decay>,
+    h: f64,
+    factors: (f64, f64),
+}
+
+impl<'d> Decaying<'d> {
+    fn new(decay: Option<&'d Decay>) -> Self {
+        Self {
+            decay,
+            h: 0.0,
+            factors: (1.0, 1.0),
+        }
+    }
+
+    fn factors(&mut self, h: f64) -> Option<(f64, f64)> {
+        let decay = self.decay?;
+        if h != self.h {
+            self.h = h;
+            self.factors = (decay.linear_factor(h), decay.angular_factor(h));
+        }
+        Some(self.factors)
+    }
+}
+
 /// Damps the velocities for `h` seconds.
 pub fn damp(decay: &Decay, h: f64, state: &mut StateBlock) {
     let (linear, angular) = (decay.linear_factor(h), decay.angular_factor(h));
@@ -122,29 +267,3 @@ pub fn damp(decay: &Decay, h: f64, state: &mut StateBlock) {
         state.set(lane, decayed(state.get(lane), linear, angular));
     }
 }
-
-/// Calls a kernel with the [`Forces`] that a load has at one time and state: `wrench` is an
-/// `Option<&WrenchBlock>`.
-macro_rules! with_forces {
-    ($load:expr, $wrench:expr, |$forces:ident| $work:expr) => {
-        match ($wrench, $load.gyroscopic()) {
-            (None, false) => {
-                let $forces = $crate::integrator::common::Coasting::<false>;
-                $work
-            }
-            (None, true) => {
-                let $forces = $crate::integrator::common::Coasting::<true>;
-                $work
-            }
-            (Some(wrench), false) => {
-                let $forces = $crate::integrator::common::Applied::<false>(wrench);
-                $work
-            }
-            (Some(wrench), true) => {
-                let $forces = $crate::integrator::common::Applied::<true>(wrench);
-                $work
-            }
-        }
-    };
-}
-pub(super) use with_forces;

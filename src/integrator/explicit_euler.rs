@@ -8,12 +8,11 @@
 //! step, however small h is. It is here to show that.
 //! Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, I.7.
 
-use super::common::{Acceleration, Forces, Rate, along, damp, normalised, with_forces};
+use super::common::{Acceleration, Forces, Kernel, Rate, along, march, normalised};
 use super::one_step::OneStep;
-use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
-use crate::body::{InertialBlock, LANES, State, StateBlock};
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models, Step};
+use crate::body::{Inertial, State, StateBlock};
 use crate::math::spin_rate;
-use multiversion::multiversion;
 
 #[derive(Clone, Copy)]
 pub struct ExplicitEuler;
@@ -43,33 +42,30 @@ impl OneStep for ExplicitEuler {
     }
 
     fn step(&self, t: f64, h: f64, interval: &Interval, state: &mut StateBlock) {
-        let (load, inertial) = (&interval.load, &interval.inertial);
-        let wrench = load.wrench(t, inertial, state);
-        with_forces!(load, wrench.as_ref(), |forces| lanes(
-            h, forces, inertial, state
-        ));
-        if let Some(decay) = load.decay() {
-            damp(decay, h, state);
-        }
+        self.steps(&[Step::alone(t, h)], interval, state, &mut Vec::new());
+    }
+
+    fn steps(
+        &self,
+        steps: &[Step],
+        interval: &Interval,
+        state: &mut StateBlock,
+        kept: &mut Vec<StateBlock>,
+    ) {
+        march(*self, steps, interval, state, kept);
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn lanes<F: Forces>(h: f64, forces: F, inertial: &InertialBlock, state: &mut StateBlock) {
-    for lane in 0..LANES {
-        let s = state.get(lane);
-        let acceleration = forces.acceleration(lane, &inertial.get(lane), &s);
-        state.set(lane, kernel(h, acceleration, s));
+impl Kernel for ExplicitEuler {
+    #[inline(always)]
+    fn stepped(self, h: f64, lane: usize, forces: impl Forces, body: &Inertial, s: State) -> State {
+        let Acceleration { a_w, alpha_w } = forces.acceleration(lane, body, &s);
+        let rate = Rate {
+            x_w: s.v_w,
+            v_w: a_w,
+            q_wp: spin_rate(s.omega_w, s.q_wp),
+            omega_w: alpha_w,
+        };
+        normalised(along(s, h, rate))
     }
-}
-
-#[inline(always)]
-fn kernel(h: f64, acceleration: Acceleration, s: State) -> State {
-    let rate = Rate {
-        x_w: s.v_w,
-        v_w: acceleration.a_w,
-        q_wp: spin_rate(s.omega_w, s.q_wp),
-        omega_w: acceleration.alpha_w,
-    };
-    normalised(along(s, h, rate))
 }

@@ -66,6 +66,18 @@ pub struct Step {
     pub keep: bool,
 }
 
+impl Step {
+    /// A step by itself, from `t` to `t + h` (s), whose end nobody keeps.
+    fn alone(t: f64, h: f64) -> Self {
+        Self {
+            from: t,
+            h,
+            to: t + h,
+            keep: false,
+        }
+    }
+}
+
 /// What was done so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {

@@ -9,6 +9,22 @@ pub trait OneStep: Copy + Send + Sync + 'static {
 
     /// Advances a block from `t` to `t + h` (s).
     fn step(&self, t: f64, h: f64, interval: &Interval, state: &mut StateBlock);
+
+    /// Several steps, one after the other; appends the state after each that is kept.
+    fn steps(
+        &self,
+        steps: &[Step],
+        interval: &Interval,
+        state: &mut StateBlock,
+        kept: &mut Vec<StateBlock>,
+    ) {
+        for step in steps {
+            self.step(step.from, step.h, interval, state);
+            if step.keep {
+                kept.push(*state);
+            }
+        }
+    }
 }
 
 /// Makes a [`Method`] of a [`OneStep`].
@@ -19,7 +35,8 @@ impl<M: OneStep> Method for Stepped<M> {
         self.0.info()
     }
 
-    fn start(&self, interval: Interval, _t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+    fn start(&self, mut interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+        interval.load.settle(t, &interval.inertial, state);
         Box::new(Run {
             method: self.0,
             interval,
@@ -39,13 +56,8 @@ struct Run<M> {
 
 impl<M: OneStep> Stepper for Run<M> {
     fn advance(&mut self, steps: &[Step], kept: &mut Vec<StateBlock>) {
-        for step in steps {
-            self.method
-                .step(step.from, step.h, &self.interval, &mut self.state);
-            if step.keep {
-                kept.push(self.state);
-            }
-        }
+        self.method
+            .steps(steps, &self.interval, &mut self.state, kept);
         self.steps += steps.len() as u64;
     }
 

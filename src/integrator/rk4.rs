@@ -15,8 +15,8 @@
 //! y' = E² y + h/6 (E² k1 + 2 E (k2 + k3) + k4)
 //! ```
 //!
-//! Where nothing is applied, all four stages of a lane are one kernel: no forces to ask for between
-//! them. Stages are brought to unit q before f is taken there: the same method on the field f(y/|q|),
+//! Where nothing is applied, or what is stays the same, all four stages of a lane are one kernel: no
+//! forces to ask for between them. Stages are brought to unit q before f is taken there: the same method on the field f(y/|q|),
 //! whose solutions are the same and of which |q| is an invariant. It keeps order 4, and the error is
 //! several times smaller than with the rates of a q that is no rotation.
 //!
@@ -24,11 +24,11 @@
 //! Neither energy nor momentum is kept exactly: both drift as h⁴.
 
 use super::common::{
-    Forces, HalfDecay, Rate, RateBlock, along, decayed, normalised, rate, with_forces,
+    Forces, HalfDecay, Kernel, along, each_lane, march, normalised, rate, with_forces,
 };
 use super::one_step::OneStep;
-use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
-use crate::body::{InertialBlock, LANES, State, StateBlock};
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models, Step};
+use crate::body::{Inertial, LANES, State, StateBlock};
 use multiversion::multiversion;
 
 #[derive(Clone, Copy)]
@@ -60,133 +60,158 @@ impl OneStep for Rk4 {
 
     fn step(&self, t: f64, h: f64, interval: &Interval, state: &mut StateBlock) {
         let (load, inertial) = (&interval.load, &interval.inertial);
-        if !load.applies() && load.decay().is_none() {
-            with_forces!(load, None, |forces| coast(h, forces, inertial, state));
-            return;
-        }
         let half = 0.5 * h;
-        let start = *state;
         let decay = HalfDecay::of(load, half);
-        let rate = |t: f64, at: &StateBlock| {
-            let mut k = RateBlock::default();
-            let wrench = load.wrench(t, inertial, at);
-            with_forces!(load, wrench.as_ref(), |forces| rates(
-                forces, inertial, at, &mut k
-            ));
-            k
-        };
-        let stage = |h: f64, k: &RateBlock, when: Stage| {
-            let mut y = StateBlock::default();
-            match decay {
-                None => advance(h, &start, k, &mut y),
-                Some(e) => advance_decaying(h, e, when, &start, k, &mut y),
+        let start = *state;
+        let mut at = start;
+        if let Some(e) = decay {
+            decay_twice(e, state);
+        }
+        let mut room = None;
+        for stage in stages(h) {
+            let wrench = load.wrench_in(&mut room, t + stage.ahead, inertial, &at);
+            with_forces!(load, wrench, |forces| match decay {
+                None => advance(stage, forces, interval, &start, &mut at, state),
+                Some(e) => advance_decaying(stage, e, forces, interval, &start, &mut at, state),
+            });
+        }
+        let wrench = load.wrench_in(&mut room, t + h, inertial, &at);
+        with_forces!(load, wrench, |forces| finish(
+            h, forces, interval, &at, state
+        ));
+    }
+
+    fn steps(
+        &self,
+        steps: &[Step],
+        interval: &Interval,
+        state: &mut StateBlock,
+        kept: &mut Vec<StateBlock>,
+    ) {
+        let load = &interval.load;
+        if load.decay().is_none() && !load.varies() {
+            return march(*self, steps, interval, state, kept);
+        }
+        for step in steps {
+            self.step(step.from, step.h, interval, state);
+            if step.keep {
+                kept.push(*state);
             }
-            y
-        };
-        let k1 = rate(t, &start);
-        let k2 = rate(t + half, &stage(half, &k1, Stage::Second));
-        let k3 = rate(t + half, &stage(half, &k2, Stage::Third));
-        let k4 = rate(t + h, &stage(h, &k3, Stage::Fourth));
-        match decay {
-            None => combine(h, &start, [&k1, &k2, &k3, &k4], state),
-            Some(e) => combine_decaying(h, e, &start, [&k1, &k2, &k3, &k4], state),
         }
     }
 }
 
+/// All four stages, under forces that stay.
+impl Kernel for Rk4 {
+    #[inline(always)]
+    fn stepped(self, h: f64, lane: usize, forces: impl Forces, body: &Inertial, y: State) -> State {
+        let k1 = rate(lane, forces, body, y);
+        let k2 = rate(lane, forces, body, normalised(along(y, 0.5 * h, k1)));
+        let k3 = rate(lane, forces, body, normalised(along(y, 0.5 * h, k2)));
+        let k4 = rate(lane, forces, body, normalised(along(y, h, k3)));
+        let sum = along(along(along(y, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3);
+        normalised(along(sum, h / 6.0, k4))
+    }
+}
+
+/// What becomes of the rates k of a stage.
 #[derive(Clone, Copy)]
-enum Stage {
-    Second,
-    Third,
-    Fourth,
+struct Stage {
+    /// Where they are taken, after the start of the step, s.
+    ahead: f64,
+    /// Their weight in the sum, s.
+    weight: f64,
+    /// How far they carry to the next stage, s.
+    next: f64,
+    decay: Decaying,
 }
 
-/// A whole step of bodies on which nothing is applied.
+/// How often E comes before k's weight in the sum, before y and k in the next stage, and after them.
+#[derive(Clone, Copy)]
+struct Decaying {
+    sum: u8,
+    y: u8,
+    k: u8,
+    after: u8,
+}
+
+/// All stages but the last.
+fn stages(h: f64) -> [Stage; 3] {
+    let decay = |sum, y, k, after| Decaying { sum, y, k, after };
+    let stage = |ahead, weight, next, decay| Stage {
+        ahead,
+        weight,
+        next,
+        decay,
+    };
+    let half = 0.5 * h;
+    [
+        stage(0.0, h / 6.0, half, decay(2, 0, 0, 1)),
+        stage(half, h / 3.0, half, decay(1, 1, 0, 0)),
+        stage(half, h / 3.0, h, decay(1, 2, 1, 0)),
+    ]
+}
+
+/// From a stage to the next.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn coast<F: Forces>(h: f64, forces: F, inertial: &InertialBlock, state: &mut StateBlock) {
-    for lane in 0..LANES {
-        let (body, y) = (inertial.get(lane), state.get(lane));
-        let k1 = rate(lane, forces, &body, y);
-        let k2 = rate(lane, forces, &body, normalised(along(y, 0.5 * h, k1)));
-        let k3 = rate(lane, forces, &body, normalised(along(y, 0.5 * h, k2)));
-        let k4 = rate(lane, forces, &body, normalised(along(y, h, k3)));
-        state.set(lane, normalised(weighted(h, y, [k1, k2, k3, k4])));
-    }
-}
-
-/// `y + h/6 (k1 + 2 k2 + 2 k3 + k4)`.
-#[inline(always)]
-fn weighted(h: f64, y: State, [k1, k2, k3, k4]: [Rate; 4]) -> State {
-    along(
-        along(along(along(y, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3),
-        h / 6.0,
-        k4,
-    )
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn rates<F: Forces>(forces: F, inertial: &InertialBlock, at: &StateBlock, out: &mut RateBlock) {
-    for lane in 0..LANES {
-        out.set(lane, rate(lane, forces, &inertial.get(lane), at.get(lane)));
-    }
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn advance(h: f64, start: &StateBlock, k: &RateBlock, out: &mut StateBlock) {
-    for lane in 0..LANES {
-        out.set(lane, normalised(along(start.get(lane), h, k.get(lane))));
-    }
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn combine(h: f64, start: &StateBlock, k: [&RateBlock; 4], out: &mut StateBlock) {
-    for lane in 0..LANES {
-        let k = [
-            k[0].get(lane),
-            k[1].get(lane),
-            k[2].get(lane),
-            k[3].get(lane),
-        ];
-        out.set(lane, normalised(weighted(h, start.get(lane), k)));
-    }
-}
-
-fn advance_decaying(
-    h: f64,
-    e: HalfDecay,
-    when: Stage,
+fn advance<F: Forces>(
+    stage: Stage,
+    forces: F,
+    interval: &Interval,
     start: &StateBlock,
-    k: &RateBlock,
-    out: &mut StateBlock,
+    at: &mut StateBlock,
+    sum: &mut StateBlock,
 ) {
-    let (l, a) = (e.linear, e.angular);
-    for lane in 0..LANES {
-        let (y, k) = (start.get(lane), k.get(lane));
-        let next = match when {
-            Stage::Second => decayed(along(y, h, k), l, a),
-            Stage::Third => along(decayed(y, l, a), h, k),
-            Stage::Fourth => along(decayed(y, l * l, a * a), h, decayed(k, l, a)),
-        };
-        out.set(lane, normalised(next));
-    }
+    each_lane!(interval.bodies, |lane| {
+        let k = rate(lane, forces, &interval.inertial.get(lane), at.get(lane));
+        sum.set(lane, along(sum.get(lane), stage.weight, k));
+        at.set(lane, normalised(along(start.get(lane), stage.next, k)));
+    });
 }
 
-fn combine_decaying(
-    h: f64,
+/// The same with decay.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn advance_decaying<F: Forces>(
+    stage: Stage,
     e: HalfDecay,
+    forces: F,
+    interval: &Interval,
     start: &StateBlock,
-    k: [&RateBlock; 4],
-    out: &mut StateBlock,
+    at: &mut StateBlock,
+    sum: &mut StateBlock,
 ) {
-    let (l, a) = (e.linear, e.angular);
+    let Decaying {
+        sum: s,
+        y,
+        k,
+        after,
+    } = stage.decay;
+    let [s, y, k, after] = [s, y, k, after].map(|times| e.times(times));
+    each_lane!(interval.bodies, |lane| {
+        let rate = rate(lane, forces, &interval.inertial.get(lane), at.get(lane));
+        sum.set(lane, along(sum.get(lane), stage.weight, s.on(rate)));
+        let next = along(y.on(start.get(lane)), stage.next, k.on(rate));
+        at.set(lane, normalised(after.on(next)));
+    });
+}
+
+/// The last stage.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn finish<F: Forces>(
+    h: f64,
+    forces: F,
+    interval: &Interval,
+    at: &StateBlock,
+    sum: &mut StateBlock,
+) {
+    each_lane!(interval.bodies, |lane| {
+        let k4 = rate(lane, forces, &interval.inertial.get(lane), at.get(lane));
+        sum.set(lane, normalised(along(sum.get(lane), h / 6.0, k4)));
+    });
+}
+
+fn decay_twice(e: HalfDecay, state: &mut StateBlock) {
     for lane in 0..LANES {
-        let k = [
-            decayed(k[0].get(lane), l * l, a * a),
-            decayed(k[1].get(lane), l, a),
-            decayed(k[2].get(lane), l, a),
-            k[3].get(lane),
-        ];
-        let y = decayed(start.get(lane), l * l, a * a);
-        out.set(lane, normalised(weighted(h, y, k)));
+        state.set(lane, e.times(2).on(state.get(lane)));
     }
 }

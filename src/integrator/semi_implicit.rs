@@ -9,12 +9,11 @@
 //! With the gyroscopic effect the term enters explicitly, and energy grows.
 //! Degenerate cases: an inverse moment of 0 leaves that component of ω alone; ω = 0 leaves q alone.
 
-use super::common::{Acceleration, Forces, damp, with_forces};
+use super::common::{Acceleration, Forces, Kernel, march};
 use super::one_step::OneStep;
-use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
-use crate::body::{InertialBlock, LANES, State, StateBlock};
+use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models, Step};
+use crate::body::{Inertial, State, StateBlock};
 use crate::math::spin_rate;
-use multiversion::multiversion;
 
 #[derive(Clone, Copy)]
 pub struct SemiImplicit;
@@ -44,35 +43,32 @@ impl OneStep for SemiImplicit {
     }
 
     fn step(&self, t: f64, h: f64, interval: &Interval, state: &mut StateBlock) {
-        let (load, inertial) = (&interval.load, &interval.inertial);
-        let wrench = load.wrench(t, inertial, state);
-        with_forces!(load, wrench.as_ref(), |forces| lanes(
-            h, forces, inertial, state
-        ));
-        if let Some(decay) = load.decay() {
-            damp(decay, h, state);
+        self.steps(&[Step::alone(t, h)], interval, state, &mut Vec::new());
+    }
+
+    fn steps(
+        &self,
+        steps: &[Step],
+        interval: &Interval,
+        state: &mut StateBlock,
+        kept: &mut Vec<StateBlock>,
+    ) {
+        march(*self, steps, interval, state, kept);
+    }
+}
+
+impl Kernel for SemiImplicit {
+    #[inline(always)]
+    fn stepped(self, h: f64, lane: usize, forces: impl Forces, body: &Inertial, s: State) -> State {
+        let Acceleration { a_w, alpha_w } = forces.acceleration(lane, body, &s);
+        let omega_w = s.omega_w + alpha_w * h;
+        let q = s.q_wp + spin_rate(omega_w, s.q_wp) * h;
+        let v_w = s.v_w + a_w * h;
+        State {
+            x_w: s.x_w + v_w * h,
+            v_w,
+            q_wp: q * (1.0 / q.norm()),
+            omega_w,
         }
-    }
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn lanes<F: Forces>(h: f64, forces: F, inertial: &InertialBlock, state: &mut StateBlock) {
-    for lane in 0..LANES {
-        let s = state.get(lane);
-        let acceleration = forces.acceleration(lane, &inertial.get(lane), &s);
-        state.set(lane, kernel(h, acceleration, s));
-    }
-}
-
-#[inline(always)]
-fn kernel(h: f64, acceleration: Acceleration, s: State) -> State {
-    let omega_w = s.omega_w + acceleration.alpha_w * h;
-    let q = s.q_wp + spin_rate(omega_w, s.q_wp) * h;
-    let v_w = s.v_w + acceleration.a_w * h;
-    State {
-        x_w: s.x_w + v_w * h,
-        v_w,
-        q_wp: q * (1.0 / q.norm()),
-        omega_w,
     }
 }

@@ -15,5 +15,7 @@ pub use agm::agm;
 pub use dd::Dd;
 pub use eigen::symmetric_eigen;
 pub use expansion::Expansion;
-pub use quaternion::{angle_between, axis_angle, exponential, spin_rate, turned};
+pub use quaternion::{
+    angle_between, axis_angle, exponential, exponential_by_series, is_short, spin_rate, turned,
+};
 pub use real::Real;
