@@ -366,7 +366,7 @@ fn the_lists_and_help() {
     }
     let output = torquescope(&root()).arg("scenes").output().unwrap();
     assert!(text(&output.stdout).contains("The tutorial's cone"));
-    for verb in ["run", "view", "check", "scenes"] {
+    for verb in ["run", "cost", "view", "check", "scenes"] {
         let output = torquescope(&root())
             .args([verb, "--help"])
             .output()
@@ -385,6 +385,128 @@ fn the_lists_and_help() {
             .code(),
         Some(2)
     );
+}
+
+/// `cost` on the free top, short and by a few methods, in a folder of its own.
+fn cost(folder: &Path, more: &[&str]) -> std::process::Output {
+    let scene = std::fs::read_to_string(root().join("scenes/free_top.toml")).unwrap();
+    std::fs::write(folder.join("top.toml"), scene).unwrap();
+    let mut command = torquescope(folder);
+    command.args(["cost", "top.toml", "--methods", "jolt,rk4,closed-form"]);
+    command
+        .args(["--longest", "0.02", "--repeats", "1"])
+        .args(more);
+    command.output().unwrap()
+}
+
+#[test]
+fn what_accuracy_costs_as_a_table_with_plots_and_a_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = cost(folder.path(), &[]);
+    let said = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(said.contains("the exact motion (closed-form"), "{said}");
+    let last = said.lines().last().unwrap();
+    assert!(last.starts_with("for 1e-9 rad: closed-form"), "{last}");
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    let svg = text(&read("top-cost.svg"));
+    for words in [
+        "attitude error (rad)",
+        "wall time per simulated second (s)",
+        "rk4",
+    ] {
+        assert!(svg.contains(words), "{words}");
+    }
+    assert_eq!(read("top-cost.png")[..8], *b"\x89PNG\r\n\x1a\n");
+    // The recording holds the plot and the race.
+    let recording = read("top-cost.rrd");
+    for path in ["/price/rk4", "/bodies/true", "/bodies/jolt"] {
+        let found = recording.windows(path.len()).any(|w| w == path.as_bytes());
+        assert!(found, "{path}");
+    }
+}
+
+#[test]
+fn what_accuracy_costs_as_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = cost(folder.path(), &["--json", "--table", "--accuracy", "1e-3"]);
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["accuracy"], 1e-3);
+    let rungs = report["rungs"].as_array().unwrap();
+    let of = |method: &str| rungs.iter().filter(|r| r["method"] == method).count();
+    assert!(of("jolt") > 3 && of("rk4") > 3);
+    assert_eq!(of("closed-form"), 1);
+    // An order of 4 against an order of 1, at the same step.
+    let error = |method: &str| {
+        let rung = rungs
+            .iter()
+            .find(|r| r["method"] == method && r["step"] == 0.04);
+        rung.unwrap()["attitude_error"].as_f64().unwrap()
+    };
+    assert!(error("rk4") < 1e-3 * error("jolt"));
+    let output = cost(folder.path(), &["--csv", "--table"]);
+    let csv = text(&output.stdout);
+    let mut lines = csv.lines();
+    let columns = lines.next().unwrap().split(',').count();
+    assert!(lines.clone().count() > 6);
+    assert!(lines.all(|line| line.split(',').count() == columns));
+    assert!(!folder.path().join("top-cost.svg").exists());
+}
+
+#[test]
+fn cost_is_told_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    for (more, message) in [
+        (["--accuracy", "0"], "--accuracy 0 is no angle above zero"),
+        (["--longest", "-1"], "--longest -1 is no time"),
+        (["--methods", "rk5"], "--methods: rk5 is no method"),
+        (["--out", "gone/cost"], "gone/cost.svg: cannot be written"),
+    ] {
+        let scene = root().join("scenes/free_top.toml");
+        let mut command = torquescope(folder.path());
+        let output = command.arg("cost").arg(scene).args(more).output().unwrap();
+        let said = text(&output.stderr);
+        assert!(said.contains(message), "{more:?}: {said}");
+        assert_ne!(output.status.code(), Some(0), "{more:?}");
+    }
+}
+
+#[test]
+fn a_plan_is_explained() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = root().join("scenes/heavy_top.toml");
+    let run = |more: &[&str]| {
+        let mut command = torquescope(folder.path());
+        command
+            .arg("run")
+            .arg(&scene)
+            .args(["--explain"])
+            .args(more);
+        text(&command.output().unwrap().stdout)
+    };
+    let said = run(&[]);
+    assert!(said.contains("gyroscopic, gravity"), "{said}");
+    assert!(
+        said.contains("asked for 1e-9 rad; largest attitude error"),
+        "{said}"
+    );
+    let report: serde_json::Value = serde_json::from_str(&run(&["--json"])).unwrap();
+    let plan = &report["plan"];
+    assert!(plan["achieved"].as_f64().unwrap() <= 1e-9);
+    assert_eq!(plan["intervals"].as_array().unwrap().len(), 1);
+    // More than can be had is refused, and nothing is recorded.
+    let beyond = std::fs::read_to_string(&scene)
+        .unwrap()
+        .replace("accuracy = 1e-9", "accuracy = 1e-18");
+    std::fs::write(folder.path().join("beyond.toml"), beyond).unwrap();
+    let output = torquescope(folder.path())
+        .args(["run", "beyond.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = text(&output.stderr);
+    assert!(said.contains("cannot be had in this scene"), "{said}");
+    assert!(!folder.path().join("beyond.rrd").exists());
 }
 
 #[test]

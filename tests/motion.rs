@@ -215,3 +215,126 @@ fn gravity_turns_what_a_pivot_holds_and_moves_what_is_free() {
     assert!((end.position_w.y + 5.0).abs() < 1e-12 && (end.velocity_w.y + 10.0).abs() < 1e-12);
     assert_eq!(end.omega_w, Vector3::zeros());
 }
+
+/// A change of the world's coordinates: a turn and a shift, or a mirror.
+struct Coordinates {
+    /// Of vectors and points: orthogonal, determinant ±1.
+    m: Matrix3<f64>,
+    shift_w: Vector3<f64>,
+}
+
+impl Coordinates {
+    fn point(&self, p: Vector3<f64>) -> Vector3<f64> {
+        self.m * p + self.shift_w
+    }
+
+    fn polar(&self, v: Vector3<f64>) -> Vector3<f64> {
+        self.m * v
+    }
+
+    /// Torques, angular velocities, angular momenta.
+    fn axial(&self, v: Vector3<f64>) -> Vector3<f64> {
+        self.m * v * self.m.determinant()
+    }
+}
+
+/// The world turned and shifted leaves the body's axes alone; in a mirror they are mirrored too.
+#[test]
+fn the_same_motion_in_turned_shifted_and_mirrored_coordinates() {
+    let inertia = Matrix3::new(0.5, 0.02, -0.03, 0.02, 0.8, 0.05, -0.03, 0.05, 1.1);
+    let q0 = UnitQuaternion::from_euler_angles(-0.7, 0.2, 0.9);
+    let turn = UnitQuaternion::from_euler_angles(0.4, -1.1, 2.3);
+    let source = |method: &str, c: &Coordinates| {
+        let mirrored = c.m.determinant() < 0.0;
+        // Body axes: turned with the world, or seen in the same mirror.
+        let (body, attitude) = match mirrored {
+            false => (Matrix3::identity(), turn * q0),
+            true => {
+                let [x, y, z, w] = q0.coords.into();
+                // M R M of a rotation about n is one about the axial image of n.
+                (
+                    c.m,
+                    UnitQuaternion::new_unchecked(Quaternion::new(w, x, -y, -z)),
+                )
+            }
+        };
+        let polar_b = |v: [f64; 3]| list((body * Vector3::from(v)).as_slice());
+        let world = |v: Vector3<f64>| list(v.as_slice());
+        let v = |x, y, z| Vector3::new(x, y, z);
+        format!(
+            "duration = 2.0\n[stepping]\nmethod = \"{method}\"\nstep = 0.002\n[effects]\ngyroscopic = true\ngravity = {}\ndamping = {{ angular = 0.3, linear = 0.2 }}\n[[body]]\nname = \"b\"\nmass = 2.0\ninertia = {}\norientation = {}\nangular_velocity = {}\nposition = {}\nvelocity = {}\n[[event]]\nat = 0.1003\nfor = 0.3\nbody = \"b\"\nforce = {}\npoint = {{ body = {} }}\n[[event]]\nat = 0.5\nfor = 0.4\nbody = \"b\"\nforce = {}\npoint = {}\n[[event]]\nat = 1.1\nbody = \"b\"\nangular_impulse = {}\n",
+            world(c.polar(v(1.0, -9.0, 0.5))),
+            rows(&(body * inertia * body.transpose()).symmetric_part()),
+            coords(&attitude),
+            world(c.axial(v(0.3, -1.0, 0.7))),
+            world(c.point(v(1.0, 2.0, 3.0))),
+            world(c.polar(v(0.1, 0.2, 0.3))),
+            world(c.polar(v(1.0, 2.0, -3.0))),
+            polar_b([0.2, 0.5, -0.4]),
+            world(c.polar(v(-0.5, 0.4, 0.2))),
+            world(c.point(v(1.3, 0.5, 2.8))),
+            world(c.axial(v(0.0, 0.4, 0.1))),
+        )
+    };
+    let here = Coordinates {
+        m: Matrix3::identity(),
+        shift_w: Vector3::zeros(),
+    };
+    let turned = Coordinates {
+        m: turn.to_rotation_matrix().into_inner(),
+        shift_w: Vector3::new(3.0, -2.0, 7.0),
+    };
+    let mirror = Coordinates {
+        m: Matrix3::from_diagonal(&Vector3::new(-1.0, 1.0, 1.0)),
+        shift_w: Vector3::zeros(),
+    };
+    for method in [
+        "rk4",
+        "lie-midpoint",
+        "cf4",
+        "buss",
+        "dlm",
+        "strang",
+        "rkn6",
+        "aba1064",
+        "taylor",
+        "dop853",
+        "bullet",
+        "mujoco-rk4",
+    ] {
+        // The plain world is the turned one turned back: there the attitude is q0 alone.
+        let plain = source(method, &here).replace(&coords(&(turn * q0)), &coords(&q0));
+        let (subjects, one) = run(&plain);
+        let a = &one.end[0];
+        for c in [&turned, &mirror] {
+            let (others, other) = run(&source(method, c));
+            let b = &other.end[0];
+            // A thousand steps of numbers of size 10, rounded differently; steps of a method's own
+            // end elsewhere where an error estimate is rounded differently.
+            let bound = 1e-11;
+            let near = |got: Vector3<f64>, want: Vector3<f64>| (got - want).norm() < bound;
+            assert!(
+                near(b.motion.position_w, c.point(a.motion.position_w)),
+                "{method}"
+            );
+            assert!(
+                near(b.motion.velocity_w, c.polar(a.motion.velocity_w)),
+                "{method}"
+            );
+            assert!(
+                near(b.motion.omega_w, c.axial(a.motion.omega_w)),
+                "{method}"
+            );
+            assert!(near(b.alpha_w, c.axial(a.alpha_w)), "{method}");
+            let (la, lb) = (
+                subjects[0].momentum_w(&a.motion),
+                others[0].momentum_w(&b.motion),
+            );
+            assert!(near(lb, c.axial(la)), "{method}");
+            let (ea, eb) = (subjects[0].energy(&a.motion), others[0].energy(&b.motion));
+            // E is some 100 J here.
+            assert!((ea - eb).abs() < 1e-9, "{method}: {ea} {eb}");
+        }
+        assert!(a.motion.position_w.y < -5.0);
+    }
+}

@@ -9,6 +9,7 @@ use crate::sim::{Choose, Simulation};
 use crate::trace::{StreamSet, short};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
+use std::fs::OpenOptions;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -25,7 +26,7 @@ pub struct Arguments {
     /// The scene, a TOML file.
     scene: PathBuf,
     /// The accuracy (rad) that the sentence at the end is about [default: the scene's, or 1e-6].
-    #[arg(long, value_name = "RAD")]
+    #[arg(long, value_name = "RAD", allow_negative_numbers = true)]
     accuracy: Option<f64>,
     /// Only these methods, by comma [default: all that take the scene's torques].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
@@ -44,7 +45,12 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
     repeats: u16,
     /// Settings that would take longer than this many seconds are left out.
-    #[arg(long, value_name = "S", default_value_t = 1.0)]
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 1.0,
+        allow_negative_numbers = true
+    )]
     longest: f64,
     /// Print comma-separated values instead of a table.
     #[arg(long, conflicts_with = "json")]
@@ -62,6 +68,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         repeats: usize::from(arguments.repeats),
         longest: longest(arguments.longest)?,
     };
+    let places = Places::of(arguments, &scene);
+    if !arguments.table {
+        places.can_be_written()?;
+    }
     let stop = stop_on_interrupt()?;
     let bar = progress_bar(ladder.methods.len());
     let mut watch = |progress: Progress| {
@@ -86,7 +96,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         print::out(&table(&scene, &cost, &advice, arguments.all))?;
     }
     if !arguments.table {
-        files(arguments, &scene, &cost, &advice)?;
+        files(&places, &scene, &cost, &advice)?;
     }
     Ok(())
 }
@@ -324,33 +334,62 @@ fn csv(cost: &Cost) -> String {
     text
 }
 
+/// Where the plots and the recording go.
+struct Places {
+    svg: PathBuf,
+    png: PathBuf,
+    recording: PathBuf,
+}
+
+impl Places {
+    fn of(arguments: &Arguments, scene: &Scene) -> Self {
+        let prefix = match &arguments.out {
+            Some(path) => path.clone(),
+            None => PathBuf::from(format!("{}-cost", scene.name)),
+        };
+        let with = |ending: &str| {
+            let mut name = prefix.clone().into_os_string();
+            name.push(ending);
+            PathBuf::from(name)
+        };
+        Self {
+            svg: with(".svg"),
+            png: with(".png"),
+            recording: with(".rrd"),
+        }
+    }
+
+    /// Before anything is measured: what cannot be written should not cost a minute first.
+    fn can_be_written(&self) -> anyhow::Result<()> {
+        for path in [&self.svg, &self.png, &self.recording] {
+            let there = path.exists();
+            let opened = OpenOptions::new().append(true).create(true).open(path);
+            opened.map_err(|error| {
+                let path = path.display();
+                Wrong(format!(
+                    "{path}: cannot be written: {error}; choose another --out, or --table for the table alone"
+                ))
+            })?;
+            if !there {
+                // It was made to see whether it can be.
+                let _ = std::fs::remove_file(path);
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Writes the plots and the recording and says where they are.
-fn files(
-    arguments: &Arguments,
-    scene: &Scene,
-    cost: &Cost,
-    advice: &Advice<'_>,
-) -> anyhow::Result<()> {
-    let prefix = match &arguments.out {
-        Some(path) => path.clone(),
-        None => PathBuf::from(format!("{}-cost", scene.name)),
-    };
-    let with = |ending: &str| {
-        let mut name = prefix.clone().into_os_string();
-        name.push(ending);
-        PathBuf::from(name)
-    };
+fn files(places: &Places, scene: &Scene, cost: &Cost, advice: &Advice<'_>) -> anyhow::Result<()> {
     let title = format!("What accuracy costs: {}", scene.title);
-    let (svg, png) = (with(".svg"), with(".png"));
-    plot::svg(cost, &title, &svg)?;
-    plot::png(cost, &title, &png)?;
-    let recording = with(".rrd");
-    record(scene, cost, advice, &recording)?;
+    plot::svg(cost, &title, &places.svg)?;
+    plot::png(cost, &title, &places.png)?;
+    record(scene, cost, advice, &places.recording)?;
     print::err(&format!(
         "{}, {}, {recording}\nto open it: torquescope view {recording}",
-        svg.display(),
-        png.display(),
-        recording = recording.display()
+        places.svg.display(),
+        places.png.display(),
+        recording = places.recording.display()
     ));
     Ok(())
 }

@@ -21,13 +21,18 @@ pub(super) fn check(scene: &Scene, top: &Table<'_>, problems: &mut Problems) {
         return;
     }
     let events = top.tables("event", problems);
+    // The key `method`: the usual one takes every load, so a method that refuses was named.
+    let named = top
+        .table("stepping", problems)
+        .and_then(|t| t.get("method"));
     for Unpaired { why, event } in unpaired {
         let table = event.and_then(|k| events.get(k));
         let span = match table {
             Some(table) => table.span().clone(),
-            None => top.get("stepping").map_or(0..0, |node| node.span),
+            None => named.as_ref().map_or(0..0, |node| node.span.clone()),
         };
-        problems.add(&span, format!("{why}; choose a method that takes it"));
+        let remedy = "choose a method that takes it (`torquescope methods`), or state `accuracy` in place of a method";
+        problems.add(&span, format!("{why}; {remedy}"));
     }
 }
 
