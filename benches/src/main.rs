@@ -5,7 +5,10 @@
 mod bodies;
 mod by_hand;
 mod measure;
+mod precision;
+mod problems;
 mod report;
+mod threads;
 mod throughput;
 mod weight;
 
@@ -18,7 +21,10 @@ type Section = fn(&mut Report, usize);
 const SECTIONS: &[(&str, Section)] = &[
     ("methods", throughput::methods),
     ("tutorial", throughput::tutorial),
+    ("threads", threads::threads),
     ("weights", weight::weights),
+    ("exact", precision::exact),
+    ("precision", precision::precision),
 ];
 
 fn main() {

@@ -7,6 +7,7 @@
 
 use cpu_time::ThreadTime;
 use std::hint::black_box;
+use std::time::Instant;
 
 /// Shortest time of the repeats, ns, and how much longer half of them took: (median - min)/min.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +45,21 @@ pub fn contestant<'a, S>(
     Box::new(move || {
         let mut subject = setup();
         let start = ThreadTime::now();
+        run(black_box(&mut subject));
+        let ns = start.elapsed().as_nanos() as f64;
+        black_box(&subject);
+        ns
+    })
+}
+
+/// The same by the clock on the wall, for what runs on several threads.
+pub fn wall<'a, S>(
+    mut setup: impl FnMut() -> S + 'a,
+    mut run: impl FnMut(&mut S) + 'a,
+) -> Contestant<'a> {
+    Box::new(move || {
+        let mut subject = setup();
+        let start = Instant::now();
         run(black_box(&mut subject));
         let ns = start.elapsed().as_nanos() as f64;
         black_box(&subject);
