@@ -1,9 +1,8 @@
 //! Two motions with known ends, for work against precision; the peers run the same ones.
 
 use nalgebra::{Quaternion, Vector3};
-use std::sync::Arc;
 use torquescope::body::{Inertial, InertialBlock, State, StateBlock};
-use torquescope::effect::{Frame, Load, Push};
+use torquescope::effect::{Called, EFFECTS, Load, Value};
 use torquescope::integrator::{Interval, Method, Step, Stepper};
 
 /// How long both take, s.
@@ -23,7 +22,7 @@ pub fn free() -> Problem {
     problem(
         load,
         Vector3::new(1.0, 2.0, 3.0),
-        1.0,
+        Vector3::zeros(),
         Quaternion::identity(),
         Vector3::new(0.1, 2.0, 0.1),
         // 60 digits, Legendre's form (tests/oracles/free_body.py).
@@ -40,17 +39,17 @@ pub fn free() -> Problem {
 pub fn top() -> Problem {
     let mut load = Load::default();
     load.set_gyroscopic();
-    load.push(Arc::new(Push {
-        lane: 0,
-        force: Frame::World(Vector3::new(0.0, 0.0, -1.0)),
-        point: Frame::Principal(Vector3::new(0.3, 0.2, 1.0)),
-    }));
+    let gravity = EFFECTS.iter().find(|effect| effect.name == "gravity");
+    let down = Value::Vector(Vector3::new(0.0, 0.0, -1.0));
+    if let Some(Ok(Called::Load(gravity))) = gravity.map(|gravity| (gravity.make)(&down, 1.0)) {
+        load.push(gravity);
+    }
     let moments = Vector3::new(1.0, 1.6, 2.1);
     let q0 = Quaternion::new(0.86_f64.sqrt(), 0.1, 0.3, -0.2);
     problem(
         load,
         moments,
-        0.0,
+        Vector3::new(0.3, 0.2, 1.0),
         q0,
         Vector3::new(0.5, -0.8, 2.0),
         // Two integrations in 40 digits and more.
@@ -66,7 +65,7 @@ pub fn top() -> Problem {
 fn problem(
     load: Load,
     moments: Vector3<f64>,
-    inv_mass: f64,
+    centre_p: Vector3<f64>,
     q0: Quaternion<f64>,
     omega_p: Vector3<f64>,
     end: Quaternion<f64>,
@@ -76,10 +75,15 @@ fn problem(
         0,
         Inertial {
             mass: 1.0,
-            inv_mass,
+            // What is not held at its centre is held at a pivot.
+            inv_mass: if centre_p == Vector3::zeros() {
+                1.0
+            } else {
+                0.0
+            },
             moments,
             inv_moments: moments.map(|i| 1.0 / i),
-            centre_p: Vector3::zeros(),
+            centre_p,
         },
     );
     let upright = State {

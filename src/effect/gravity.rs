@@ -6,6 +6,7 @@
 
 use super::{Argument, Called, Effect, EffectKind, Frame, Term, Value, WrenchBlock};
 use crate::body::{InertialBlock, LANES, StateBlock};
+use multiversion::multiversion;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
@@ -32,15 +33,7 @@ impl Effect for Gravity {
     }
 
     fn add(&self, _t: f64, inertial: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {
-        for lane in 0..LANES {
-            let (body, state) = (inertial.get(lane), state.get(lane));
-            let weight_w = self.g_w * body.mass;
-            wrench.add(
-                lane,
-                weight_w,
-                state.to_world(body.centre_p).cross(&weight_w),
-            );
-        }
+        weigh(self.g_w, inertial, state, wrench);
     }
 
     fn terms(&self, inertial: &InertialBlock) -> Option<Vec<Term>> {
@@ -53,5 +46,20 @@ impl Effect for Gravity {
             }
         };
         Some((0..LANES).map(weight).collect())
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn weigh(
+    g_w: Vector3<f64>,
+    inertial: &InertialBlock,
+    state: &StateBlock,
+    wrench: &mut WrenchBlock,
+) {
+    for lane in 0..LANES {
+        let (body, state) = (inertial.get(lane), state.get(lane));
+        let weight_w = g_w * body.mass;
+        let tau_w = state.to_world(body.centre_p).cross(&weight_w);
+        wrench.add(lane, weight_w, tau_w);
     }
 }

@@ -32,15 +32,13 @@ macro_rules! with_forces {
 }
 pub(super) use with_forces;
 
-/// So few bodies are sooner stepped one by one than as a block of eight.
-pub const FEW: usize = 2;
-
-/// Does the same for every lane that holds a body: for [`FEW`] one by one, else for all eight, which
-/// is as many rounds as the compiler knows beforehand, so that it makes vector code of them.
+/// Does the same for every lane that holds a body: for one body alone, else for all eight, which is as
+/// many rounds as the compiler knows beforehand, so that it makes vector code of them.
 macro_rules! each_lane {
     ($bodies:expr, |$lane:ident| $work:block) => {
-        if $bodies <= $crate::integrator::common::FEW {
-            for $lane in 0..$bodies $work
+        if $bodies == 1 {
+            let $lane = 0;
+            $work
         } else {
             for $lane in 0..$crate::body::LANES $work
         }
