@@ -64,7 +64,7 @@ pub const BUSS: Buss = Buss {
         preserves: "L of a free body, |q| by construction",
         cost: Cost {
             evaluations: 2,
-            weight: 0.4,
+            weight: 1.05,
         },
         citation: "Buss, Accurate and efficient simulation of rigid-body rotations, J. Comput. Phys. 164 (2000); torques at both ends: Heun; damping: Cox & Matthews 2002",
     },
@@ -81,7 +81,7 @@ pub const BUSS3: Buss = Buss {
         damping: Damping::Exact("a free body at its slower time"),
         cost: Cost {
             evaluations: 1,
-            weight: 0.45,
+            weight: 1.25,
         },
         citation: "Buss, J. Comput. Phys. 164 (2000), with the term of Magnus' expansion that it leaves out: Hairer, Lubich & Wanner, Geometric Numerical Integration, IV.7",
         ..*BUSS.info

@@ -41,7 +41,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "everything a free body keeps, to rounding, at any time",
     cost: Cost {
         evaluations: 0,
-        weight: 0.95,
+        weight: 2.3,
     },
     citation: "van Zon & Schofield, J. Comput. Phys. 225 (2007); Celledoni, Fassò, Säfström & Zanna, SIAM J. Sci. Comput. 30 (2008)",
 };

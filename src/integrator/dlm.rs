@@ -43,7 +43,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "angular momentum to rounding; symplectic: energy stays within bounds",
     cost: Cost {
         evaluations: 1,
-        weight: 0.47,
+        weight: 1.45,
     },
     citation: "Dullweber, Leimkuhler & McLachlan, J. Chem. Phys. 107 (1997) 5840",
 };

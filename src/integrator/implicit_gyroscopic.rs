@@ -48,7 +48,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "nothing; a free body loses energy and momentum",
     cost: Cost {
         evaluations: 1,
-        weight: 0.55,
+        weight: 1.4,
     },
     citation: "Catto, Numerical Methods, GDC 2015; Bullet 3.25, computeGyroscopicImpulseImplicit_Body in btRigidBody.cpp",
 };

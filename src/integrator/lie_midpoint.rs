@@ -37,7 +37,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "|q| by construction; rotation at constant ω exactly",
     cost: Cost {
         evaluations: 2,
-        weight: 1.4,
+        weight: 0.96,
     },
     citation: "Hairer, Lubich & Wanner, Geometric Numerical Integration, IV.8; damping: Lawson 1967",
 };

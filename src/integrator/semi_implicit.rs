@@ -32,7 +32,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "angular velocity where no torque acts and the gyroscopic term is absent",
     cost: Cost {
         evaluations: 1,
-        weight: 0.3,
+        weight: 0.36,
     },
     citation: "the tutorial; symplectic Euler: Hairer, Lubich & Wanner, Geometric Numerical Integration, I.1.2",
 };

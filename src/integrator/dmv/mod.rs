@@ -30,11 +30,11 @@ use nalgebra::{Quaternion, Vector3};
 pub struct Dmv(&'static MethodInfo);
 
 const INFO: [MethodInfo; 5] = [
-    info("dmv2", 2, 0.26),
-    info("dmv4", 4, 0.3),
-    info("dmv6", 6, 0.31),
-    info("dmv8", 8, 0.32),
-    info("dmv10", 10, 0.36),
+    info("dmv2", 2, 0.91),
+    info("dmv4", 4, 1.0),
+    info("dmv6", 6, 1.05),
+    info("dmv8", 8, 1.05),
+    info("dmv10", 10, 1.1),
 ];
 
 pub const DMV2: Dmv = Dmv(&INFO[0]);

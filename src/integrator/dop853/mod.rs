@@ -53,7 +53,7 @@ const INFO: MethodInfo = MethodInfo {
     cost: Cost {
         evaluations: 0,
         // A step of its own, tolerance 1e-12.
-        weight: 3.0,
+        weight: 8.8,
     },
     citation: "Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, II.5 and II.6 (DOP853); damping: Lawson 1967",
 };

@@ -54,7 +54,7 @@ const INFO: MethodInfo = MethodInfo {
     cost: Cost {
         evaluations: 0,
         // A step of its own, tolerance 1e-12: order 15.
-        weight: 1.45,
+        weight: 3.9,
     },
     citation: "Jorba & Zou, Experimental Mathematics 14 (2005); Biscani & Izzo, MNRAS 504 (2021)",
 };
