@@ -3,7 +3,7 @@
 use super::{Wrong, print};
 use crate::cost::{self, Advice, Cost, Ladder, Progress, Race, Rung, Spread, plot};
 use crate::integrator::{self, METHODS, Method};
-use crate::record::{Heading, Recorder};
+use crate::record::{Heading, RecordError, Recorder};
 use crate::scene::{Scene, StateRate, Stepping};
 use crate::sim::{Choose, Simulation};
 use crate::trace::{StreamSet, short};
@@ -137,7 +137,14 @@ fn methods(names: &[String]) -> anyhow::Result<Vec<&'static dyn Method>> {
             .into()
         })
     };
-    names.iter().map(find).collect()
+    let found: anyhow::Result<Vec<&'static dyn Method>> = names.iter().map(find).collect();
+    // In the order of the list, each once.
+    let found = found?;
+    let named = |method: &&dyn Method| {
+        let name = method.info().name;
+        found.iter().any(|one| one.info().name == name)
+    };
+    Ok(METHODS.iter().copied().filter(named).collect())
 }
 
 /// Set by ctrl-C, which then no longer ends the program at once.
@@ -173,13 +180,20 @@ fn weigh(scene: &Scene, chooser: &mut dyn Choose) -> Option<u64> {
     }
     let mut scene = scene.clone();
     scene.record.state = StateRate::EveryStep;
-    let simulation = Simulation::new(&scene);
-    let subjects = simulation.subjects().to_vec();
-    let heading = Heading::of(&scene, &simulation);
-    let mut recorder = Recorder::nowhere(&heading, &subjects).ok()?;
-    let (_, done) = simulation.run_by(chooser, &mut recorder);
-    done.ok()?;
-    Some(recorder.finish().ok()?.bytes)
+    let mut recorded = || -> Result<Option<u64>, RecordError> {
+        let simulation = Simulation::new(&scene);
+        let subjects = simulation.subjects().to_vec();
+        let heading = Heading::of(&scene, &simulation);
+        let mut recorder = Recorder::nowhere(&heading, &subjects)?;
+        let (_, done) = simulation.run_by(chooser, &mut recorder);
+        let bytes = recorder.finish()?.bytes;
+        // Of a run that was lost there is no whole recording.
+        Ok(done.is_ok().then_some(bytes))
+    };
+    recorded().unwrap_or_else(|error| {
+        print::err(&error.to_string());
+        None
+    })
 }
 
 /// Accuracies for which the first table says what each method costs, rad.

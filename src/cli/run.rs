@@ -77,16 +77,23 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         view::serve(&page, &arguments.serve, arguments.json)?;
     }
-    Ok(done?)
+    done.map_err(|error| anyhow::anyhow!("{error}; everything up to that instant is recorded"))
 }
 
 /// A scene that states an accuracy needs a plan; one that states a method has one where the user
 /// wants to read it.
 fn plan(scene: &Scene, explain: bool) -> anyhow::Result<Option<Plan>> {
     let needed = matches!(scene.stepping, Stepping::Accuracy(_));
-    match needed || explain {
-        true => Ok(Some(Plan::of(scene)?)),
-        false => Ok(None),
+    if !needed && !explain {
+        return Ok(None);
+    }
+    match Plan::of(scene) {
+        // What a stated method comes to is recorded, whatever becomes of its explanation.
+        Err(error) if !needed => {
+            print::err(&format!("nothing to explain: {error}"));
+            Ok(None)
+        }
+        plan => Ok(Some(plan?)),
     }
 }
 

@@ -68,7 +68,9 @@ impl Sink for Checks {
         bodies: Range<usize>,
         samples: &[Sample],
     ) -> Result<(), SinkError> {
-        // Rows of single bodies stand on either side of an event; those of all are on the clock.
+        // Rows of single bodies stand on either side of an event and are passed over; where there is
+        // one body they are compared as well, the first of the two: events are at the same instants
+        // in every run.
         if bodies.len() != self.subjects.len() || at.time == self.last {
             return Ok(());
         }
@@ -131,12 +133,18 @@ impl Run {
         kept.chain(std::iter::once(&self.end[body]))
     }
 
+    fn is_at_the_instants_of(&self, other: &Self) -> bool {
+        let times = |run: &Self| -> Vec<f64> { run.kept.iter().map(|(at, _)| at.time).collect() };
+        times(self) == times(other)
+    }
+
     fn bodies(&self) -> usize {
         self.end.len()
     }
 
     /// The largest angle between the attitudes of two runs over the same instants, rad.
     pub fn angle(&self, other: &Self) -> f64 {
+        debug_assert!(self.is_at_the_instants_of(other));
         let bodies = (0..self.bodies()).map(|k| {
             let pairs = self.of(k).zip(other.of(k));
             largest(pairs.map(|(a, b)| angle_between(a.q_wb, b.q_wb)))

@@ -1,14 +1,15 @@
 //! A scene in which one body is there many times, each by another method, beside the true one: how
 //! their motions part can be watched.
 
+use super::check;
 use super::ladder::refusal;
 use super::reference::truest;
 use crate::integrator::{Kind, METHODS, Method};
 use crate::math::angle_between;
-use crate::scene::{Action, Framed, Scene, Stepping};
+use crate::scene::{Action, Framed, Scene};
 use crate::sim::{Choice, Choose, Setting, SimError, Simulation};
 use crate::trace::{Instant, Note, Sample, Sink, SinkError, Track};
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
 
 /// The scene of a race, and who runs in it.
@@ -31,7 +32,6 @@ impl Race {
         alone.bodies.truncate(1);
         alone.events.retain(|event| event.body == 0);
         alone.step = step.min(scene.duration);
-        alone.stepping = Stepping::Accuracy(TOLERANCE);
         let mut runners = vec![None];
         let mut lost = Vec::new();
         for method in METHODS.iter().copied() {
@@ -53,8 +53,8 @@ impl Race {
 
     /// Runs it into a sink.
     pub fn run(&self, sink: &mut dyn Sink) -> Result<(), SimError> {
-        let simulation = Simulation::new(&self.scene);
-        let mut judge = Judge { sink };
+        let simulation = Simulation::one_by_one(&self.scene);
+        let mut judge = Judge { sink, truth: None };
         let (_, done) = simulation.run_by(&mut ByBody(&self.runners), &mut judge);
         done
     }
@@ -70,9 +70,10 @@ fn choice(method: &'static dyn Method) -> Choice {
 
 fn finishes(scene: &Scene, method: &'static dyn Method) -> Result<bool, SimError> {
     let runner = [Some(choice(method))];
-    let (_, done) = Simulation::new(scene).run_by(&mut ByBody(&runner), &mut Nowhere);
-    match done {
-        Ok(()) => Ok(true),
+    // With nothing to be compared on the way.
+    let bare = check::bare(scene, scene.step, 1.0);
+    match check::run(&bare, &mut ByBody(&runner)) {
+        Ok(_) => Ok(true),
         Err(SimError::NotFinite { .. }) => Ok(false),
         Err(error) => Err(error),
     }
@@ -122,6 +123,8 @@ impl Choose for ByBody<'_> {
 /// Compares every body with the first.
 struct Judge<'a> {
     sink: &'a mut dyn Sink,
+    /// The first body's attitude at the instant that is being delivered; it comes first.
+    truth: Option<(Instant, UnitQuaternion<f64>)>,
 }
 
 impl Sink for Judge<'_> {
@@ -136,31 +139,18 @@ impl Sink for Judge<'_> {
         samples: &[Sample],
     ) -> Result<(), SinkError> {
         let mut samples = samples.to_vec();
-        if let (0, Some(truth)) = (bodies.start, samples.first().map(|s| s.motion.q_wb)) {
-            for sample in &mut samples {
-                sample.deviation.attitude = Some(angle_between(truth, sample.motion.q_wb));
-            }
+        if let (0, Some(first)) = (bodies.start, samples.first()) {
+            self.truth = Some((at, first.motion.q_wb));
+        }
+        let truth = self.truth.filter(|(when, _)| *when == at);
+        for sample in &mut samples {
+            let off = |(_, truth)| angle_between(truth, sample.motion.q_wb);
+            sample.deviation.attitude = truth.map(off);
         }
         self.sink.samples(at, bodies, &samples)
     }
 
     fn note(&mut self, at: Instant, note: &Note) -> Result<(), SinkError> {
         self.sink.note(at, note)
-    }
-}
-
-struct Nowhere;
-
-impl Sink for Nowhere {
-    fn motions(&mut self, _: &Track<'_>) -> Result<(), SinkError> {
-        Ok(())
-    }
-
-    fn samples(&mut self, _: Instant, _: Range<usize>, _: &[Sample]) -> Result<(), SinkError> {
-        Ok(())
-    }
-
-    fn note(&mut self, _: Instant, _: &Note) -> Result<(), SinkError> {
-        Ok(())
     }
 }

@@ -3,6 +3,9 @@
 use super::{Step, Stepper, Work};
 use crate::body::StateBlock;
 
+/// Pieces handed on at a time.
+const MOST_AT_ONCE: usize = 8192;
+
 #[derive(Clone)]
 pub struct Pieces {
     inner: Box<dyn Stepper>,
@@ -38,8 +41,12 @@ impl Pieces {
 
 impl Stepper for Pieces {
     fn advance(&mut self, steps: &[Step], kept: &mut Vec<StateBlock>) {
-        let all: Vec<Step> = steps.iter().flat_map(|step| self.cut(step)).collect();
-        self.inner.advance(&all, kept);
+        // A few thousand pieces at once, so that a long stretch does not take memory.
+        let at_once = (MOST_AT_ONCE / self.pieces as usize).max(1);
+        for some in steps.chunks(at_once) {
+            let pieces: Vec<Step> = some.iter().flat_map(|step| self.cut(step)).collect();
+            self.inner.advance(&pieces, kept);
+        }
     }
 
     fn state(&self) -> StateBlock {

@@ -264,7 +264,7 @@ fn overview(blueprint: &mut Blueprint<'_>, setting: &Setting<'_>) -> Result<Part
     )?);
     shares.push(2.4);
     let plots = magnitude_plots(blueprint, setting)?;
-    if let Some(plots) = tabbed(blueprint, plots)? {
+    if let Some(plots) = tabbed(blueprint, &plots)? {
         columns.push(plots);
         shares.push(2.4);
     }
@@ -295,7 +295,7 @@ fn body_tab(
         let drawn = component_plot(blueprint, setting.heading, plot, index, subject)?;
         plots.push((plot.about, drawn));
     }
-    if let Some(plots) = tabbed(blueprint, plots)? {
+    if let Some(plots) = tabbed(blueprint, &plots)? {
         columns.push(plots);
         shares.push(2.4);
     }
@@ -382,15 +382,12 @@ fn shown<'s>(setting: &'s Setting<'_>) -> impl Iterator<Item = &'static Plot> + 
 /// Plots one below the other, in a tab for each thing that they are about.
 fn tabbed(
     blueprint: &mut Blueprint<'_>,
-    plots: Vec<(About, Part)>,
+    plots: &[(About, Part)],
 ) -> Result<Option<Part>, RecordError> {
     let mut tabs = Vec::new();
-    let mut plots = plots.into_iter().peekable();
     for (about, name) in TABS {
-        let mut column = Vec::new();
-        while let Some((_, plot)) = plots.next_if(|(of, _)| *of == about) {
-            column.push(plot);
-        }
+        let of_tab = plots.iter().filter(|(of, _)| *of == about);
+        let column: Vec<Part> = of_tab.map(|(_, plot)| plot.clone()).collect();
         if !column.is_empty() {
             let rows = vec![1.0; column.len()];
             tabs.push(blueprint.container(ContainerKind::Vertical, name, &column, &rows)?);
