@@ -134,8 +134,11 @@ impl Run {
     }
 
     fn is_at_the_instants_of(&self, other: &Self) -> bool {
-        let times = |run: &Self| -> Vec<f64> { run.kept.iter().map(|(at, _)| at.time).collect() };
-        times(self) == times(other)
+        // `k h` and `(k n) (h / n)` may differ by a rounding or two.
+        let same = |(a, b): (f64, f64)| (a - b).abs() <= 1e-12 * (1.0 + a.abs());
+        let mine = self.kept.iter().map(|(at, _)| at.time);
+        let others = other.kept.iter().map(|(at, _)| at.time);
+        self.kept.len() == other.kept.len() && mine.zip(others).all(same)
     }
 
     fn bodies(&self) -> usize {
