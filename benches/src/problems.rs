@@ -1,5 +1,7 @@
 //! Two motions with known ends, for work against precision; the peers run the same ones.
 
+#![expect(clippy::excessive_precision, reason = "digits as they were found")]
+
 use nalgebra::{Quaternion, Vector3};
 use torquescope::body::{Inertial, InertialBlock, State, StateBlock};
 use torquescope::effect::{Called, EFFECTS, Load, Value};

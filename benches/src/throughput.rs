@@ -16,6 +16,13 @@ pub fn set_out(method: &dyn Method, blocks: &[Block]) -> Vec<Box<dyn Stepper>> {
     blocks.iter().map(start).collect()
 }
 
+/// Methods that are exact on what acts here take none.
+fn takes_steps(method: &dyn Method, block: &Block) -> bool {
+    let mut stepper = method.start(block.interval.clone(), 0.0, &block.state);
+    stepper.advance(&steps(1, H, false), &mut Vec::new());
+    stepper.work().evaluations > 0
+}
+
 /// Each block through all its steps before the next.
 fn by_method<'a>(method: &dyn Method, blocks: &[Block]) -> Contestant<'a> {
     let started = set_out(method, blocks);
@@ -44,7 +51,8 @@ pub fn methods(report: &mut Report, repeats: usize) {
     ] {
         let blocks = blocks(&bodies, acting);
         for method in fixed.clone() {
-            if method.info().refuses(&blocks[0].interval).is_none() {
+            let refused = method.info().refuses(&blocks[0].interval).is_some();
+            if !refused && takes_steps(*method, &blocks[0]) {
                 names.push(format!("{}, {what}", method.info().name));
                 contestants.push(by_method(*method, &blocks));
             }
