@@ -411,7 +411,7 @@ fn what_accuracy_costs_as_a_table_with_plots_and_a_recording() {
     let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
     let svg = text(&read("top-cost.svg"));
     for words in [
-        "attitude error (rad)",
+        "largest error (rad)",
         "wall time per simulated second (s)",
         "rk4",
     ] {
@@ -441,7 +441,7 @@ fn what_accuracy_costs_as_data() {
         let rung = rungs
             .iter()
             .find(|r| r["method"] == method && r["step"] == 0.04);
-        rung.unwrap()["attitude_error"].as_f64().unwrap()
+        rung.unwrap()["error"].as_f64().unwrap()
     };
     assert!(error("rk4") < 1e-3 * error("jolt"));
     let output = cost(folder.path(), &["--csv", "--table"]);
@@ -457,9 +457,9 @@ fn what_accuracy_costs_as_data() {
 fn cost_is_told_what_is_wrong() {
     let folder = tempfile::tempdir().unwrap();
     for (more, message) in [
-        (["--accuracy", "0"], "--accuracy 0 is no angle above zero"),
-        (["--longest", "-1"], "--longest -1 is no time"),
-        (["--methods", "rk5"], "--methods: rk5 is no method"),
+        (["--accuracy", "0"], "--accuracy 0.0 is not above 0"),
+        (["--longest", "-1"], "--longest -1.0 is no time"),
+        (["--methods", "rk5"], "--methods: \"rk5\" is no method"),
         (["--out", "gone/cost"], "gone/cost.svg: cannot be written"),
     ] {
         let scene = root().join("scenes/free_top.toml");
@@ -468,6 +468,27 @@ fn cost_is_told_what_is_wrong() {
         let said = text(&output.stderr);
         assert!(said.contains(message), "{more:?}: {said}");
         assert_ne!(output.status.code(), Some(0), "{more:?}");
+    }
+}
+
+/// What `--out` would replace is looked at before anything is measured.
+#[test]
+fn cost_overwrites_nothing_but_its_own_results() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["pre.svg", "pre.png", "pre.rrd"] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, "precious").unwrap();
+        let output = cost(folder.path(), &["--out", "pre"]);
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        assert!(text(&output.stderr).starts_with(&format!("{name} exists")));
+        assert_eq!(std::fs::read(&path).unwrap(), b"precious");
+        std::fs::remove_file(path).unwrap();
+    }
+    for _ in 0..2 {
+        assert_eq!(
+            cost(folder.path(), &["--out", "pre"]).status.code(),
+            Some(0)
+        );
     }
 }
 
@@ -486,10 +507,7 @@ fn a_plan_is_explained() {
     };
     let said = run(&[]);
     assert!(said.contains("gyroscopic, gravity"), "{said}");
-    assert!(
-        said.contains("asked for 1e-9 rad; largest attitude error"),
-        "{said}"
-    );
+    assert!(said.contains("asked for 1e-9 rad; largest error"), "{said}");
     let report: serde_json::Value = serde_json::from_str(&run(&["--json"])).unwrap();
     let plan = &report["plan"];
     assert!(plan["achieved"].as_f64().unwrap() <= 1e-9);

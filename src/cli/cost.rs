@@ -18,8 +18,10 @@ use std::time::Duration;
 
 /// Show what accuracy costs in time on a scene, by every method over a ladder of steps.
 ///
-/// Each run's attitudes are compared, at fifty instants, with the truest motion there is: the closed
-/// form where nothing turns a body, else the most accurate method, checked by a second one.
+/// Each run is compared, at fifty instants, with the truest motion there is: the closed form where
+/// nothing turns a body, else the most accurate method, checked by a second one. An error is the
+/// angle between the attitudes (rad), or the distance of a free body's centre of mass as a part of its
+/// radius of gyration, whichever is more.
 #[derive(clap::Args)]
 #[command(after_help = "Example: torquescope cost scenes/free_top.toml --accuracy 1e-9")]
 pub struct Arguments {
@@ -87,6 +89,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if stop.load(Ordering::Relaxed) {
         print::err("interrupted: this is what was measured until then");
     }
+    if cost.rungs.is_empty() {
+        return Err(Wrong("nothing was measured: it was interrupted, or no method named takes the scene's torques".to_owned()).into());
+    }
     let advice = cost.advice(accuracy);
     if arguments.json {
         print::json(&Report::new(&scene, &cost, &advice))?;
@@ -107,21 +112,20 @@ fn accuracy(arguments: &Arguments, scene: &Scene) -> anyhow::Result<f64> {
         Stepping::Method { .. } => 1e-6,
     };
     let accuracy = arguments.accuracy.unwrap_or(stated);
-    if accuracy > 0.0 && accuracy.is_finite() {
+    if accuracy > 0.0 && accuracy <= cost::LOST {
         return Ok(accuracy);
     }
     Err(Wrong(format!(
-        "--accuracy {accuracy} is no angle above zero (rad)"
+        "--accuracy {accuracy:?} is not above 0 and at most 1 (rad)"
     ))
     .into())
 }
 
 fn longest(seconds: f64) -> anyhow::Result<Duration> {
-    Duration::try_from_secs_f64(seconds).map_err(|_| {
-        Wrong(format!(
-            "--longest {seconds} is no time; write seconds, such as 1"
-        ))
-        .into()
+    let longest = Duration::try_from_secs_f64(seconds).ok();
+    longest.filter(|time| !time.is_zero()).ok_or_else(|| {
+        let message = format!("--longest {seconds:?} is no time to wait; write seconds, such as 1");
+        Wrong(message).into()
     })
 }
 
@@ -130,9 +134,9 @@ fn methods(names: &[String]) -> anyhow::Result<Vec<&'static dyn Method>> {
         return Ok(METHODS.to_vec());
     }
     let find = |name: &String| {
-        integrator::find(name).ok_or_else(|| {
+        integrator::find(name.trim()).ok_or_else(|| {
             Wrong(format!(
-                "--methods: {name} is no method; `torquescope methods` lists them"
+                "--methods: \"{name}\" is no method; `torquescope methods` lists them"
             ))
             .into()
         })
@@ -201,8 +205,8 @@ const ACCURACIES: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
 
 fn table(scene: &Scene, cost: &Cost, advice: &Advice<'_>, all: bool) -> String {
     let mut text = format!(
-        "{}\n{} s; attitudes compared at {} instants with {}\n\n\
-         Wall time per simulated second, and the step or tolerance, for an attitude error of at most\n",
+        "{}\n{} s; compared at {} instants with {}\n\n\
+         Wall time per simulated second, and the step or tolerance, for an error of at most\n",
         scene.title,
         short(cost.duration),
         cost.instants,
@@ -215,7 +219,11 @@ fn table(scene: &Scene, cost: &Cost, advice: &Advice<'_>, all: bool) -> String {
             "\n\nNo other setting is both cheaper and truer than these (--all: every setting)\n"
         }
     };
-    let mut shown: Vec<&Rung> = cost.rungs.iter().filter(|r| all || r.on_front).collect();
+    let mut shown: Vec<&Rung> = cost
+        .rungs
+        .iter()
+        .filter(|r| all || r.on_front || r.own)
+        .collect();
     if !all {
         shown.sort_by(|a, b| a.time.median.total_cmp(&b.time.median));
     }
@@ -223,7 +231,7 @@ fn table(scene: &Scene, cost: &Cost, advice: &Advice<'_>, all: bool) -> String {
         "",
         "method",
         "step or tolerance",
-        "attitude error (rad)",
+        "error (rad)",
         "energy drift",
         "momentum drift",
         "time per simulated s",
@@ -236,8 +244,24 @@ fn table(scene: &Scene, cost: &Cost, advice: &Advice<'_>, all: bool) -> String {
     for (method, why) in &cost.refused {
         text += &format!("not {method}: {why}\n");
     }
+    if let Some(own) = cost.own() {
+        text += &format!("\nthis scene, {}", own_words(own));
+    }
     text += &format!("\n{advice}");
     text
+}
+
+/// What the scene's own setting comes to.
+fn own_words(own: &Rung) -> String {
+    let setting = own.setting();
+    match own.error.is_finite() {
+        true => format!(
+            "{setting}: off by {} rad, {} a simulated second",
+            two(own.error),
+            cost::time(own.time.median)
+        ),
+        false => format!("{setting}: lost before the end"),
+    }
 }
 
 /// A line a method, a column an accuracy: the cheapest setting that keeps to it.
@@ -282,7 +306,11 @@ fn truth(cost: &Cost) -> String {
 }
 
 fn row(rung: &Rung) -> Vec<String> {
-    let front = if rung.on_front { "*" } else { "" };
+    let front = match (rung.on_front, rung.own) {
+        (_, true) => "own",
+        (true, _) => "*",
+        _ => "",
+    };
     let setting = setting(rung).unwrap_or_else(|| "any time at once".to_owned());
     let lost = !rung.error.is_finite();
     let number = |x: f64| if lost { "lost".to_owned() } else { two(x) };
@@ -322,7 +350,7 @@ fn size(bytes: u64) -> String {
 }
 
 fn csv(cost: &Cost) -> String {
-    let mut text = "method,step_s,tolerance,attitude_error_rad,energy_drift,momentum_drift,\
+    let mut text = "method,step_s,tolerance,error_rad,energy_drift,momentum_drift,\
                     time_per_simulated_s,time_least,time_most,evaluations_per_simulated_s,\
                     steps_per_simulated_s,recording_bytes,on_front\n"
         .to_owned();
@@ -361,6 +389,11 @@ impl Places {
             Some(path) => path.clone(),
             None => PathBuf::from(format!("{}-cost", scene.name)),
         };
+        // A folder takes the usual name.
+        let prefix = match prefix.is_dir() {
+            true => prefix.join(format!("{}-cost", scene.name)),
+            false => prefix,
+        };
         let with = |ending: &str| {
             let mut name = prefix.clone().into_os_string();
             name.push(ending);
@@ -373,20 +406,34 @@ impl Places {
         }
     }
 
-    /// Before anything is measured: what cannot be written should not cost a minute first.
+    /// Before anything is measured: what cannot be written should not cost a minute first, and what
+    /// is there and is no earlier result was put there for something else.
     fn can_be_written(&self) -> anyhow::Result<()> {
-        for path in [&self.svg, &self.png, &self.recording] {
+        let kinds: [(&PathBuf, &[u8]); 3] = [
+            (&self.svg, b"<svg"),
+            (&self.png, b"\x89PNG"),
+            (&self.recording, crate::record::MAGIC),
+        ];
+        for (path, magic) in kinds {
             let there = path.exists();
             let opened = OpenOptions::new().append(true).create(true).open(path);
+            let shown = path.display();
             opened.map_err(|error| {
-                let path = path.display();
                 Wrong(format!(
-                    "{path}: cannot be written: {error}; choose another --out, or --table for the table alone"
+                    "{shown}: cannot be written: {error}; choose another --out, or --table for the table alone"
                 ))
             })?;
             if !there {
                 // It was made to see whether it can be.
                 let _ = std::fs::remove_file(path);
+                continue;
+            }
+            let content = std::fs::read(path).unwrap_or_default();
+            if !content.is_empty() && !content.starts_with(magic) {
+                return Err(Wrong(format!(
+                    "{shown} exists and is something else; choose another --out, so that it is not lost"
+                ))
+                .into());
             }
         }
         Ok(())
@@ -432,10 +479,13 @@ fn record(scene: &Scene, cost: &Cost, advice: &Advice<'_>, path: &Path) -> anyho
 
 fn notes(scene: &Scene, cost: &Cost, advice: &Advice<'_>, race: &Race) -> String {
     let step = cost::time(race.scene.step);
+    let own = cost.own().map_or(String::new(), |own| {
+        format!("\n\nThis scene, {}.", own_words(own))
+    });
     let mut text = format!(
-        "**{advice}**\n\nEach line of the plot is a method, each point a step or a tolerance; the \
-         lower and the further left the better. Errors are the largest angle from the true attitude, \
-         at {} instants of {} s, against {}.\n\nIn the next tab the body is there once for every \
+        "**{advice}**{own}\n\nEach line of the plot is a method, each point a step or a tolerance; the \
+         lower and the further left the better. Errors are the largest angle from the true attitude, or distance from the true place in radii of \
+         gyration, at {} instants of {} s, against {}.\n\nIn the next tab the body is there once for every \
          method, at steps of {step}, beside the true one: watch them part, and read *error* in the \
          accuracy plots.\n",
         cost.instants,
@@ -477,7 +527,7 @@ struct RungReport {
     method: &'static str,
     step: Option<f64>,
     tolerance: Option<f64>,
-    attitude_error: f64,
+    error: f64,
     energy_drift: f64,
     momentum_drift: f64,
     /// s a simulated second: median, least, most.
@@ -486,6 +536,8 @@ struct RungReport {
     steps: f64,
     recording_bytes: Option<u64>,
     on_front: bool,
+    /// Of the scene's own method and step.
+    own: bool,
 }
 
 #[derive(Serialize)]
@@ -500,7 +552,7 @@ impl<'a> Report<'a> {
             method: rung.method,
             step: rung.step,
             tolerance: rung.tolerance,
-            attitude_error: rung.error,
+            error: rung.error,
             energy_drift: rung.energy_drift,
             momentum_drift: rung.momentum_drift,
             time: [rung.time.median, rung.time.least, rung.time.most],
@@ -508,6 +560,7 @@ impl<'a> Report<'a> {
             steps: rung.steps,
             recording_bytes: rung.bytes,
             on_front: rung.on_front,
+            own: rung.own,
         };
         let refused = cost.refused.iter();
         Self {

@@ -32,7 +32,7 @@ pub fn table(plan: &Plan, subjects: &[Subject]) -> String {
         ),
     };
     text += &format!(
-        "\n{asked}largest attitude error: {:.1e} rad, against {with}, which is good to {:.1e} rad",
+        "\n{asked}largest error: {:.1e} rad, against {with}, which is good to {:.1e} rad",
         plan.achieved, plan.uncertainty
     );
     text

@@ -48,7 +48,7 @@ pub fn methods(arguments: &MethodArguments) -> anyhow::Result<()> {
         let info = method.info();
         [
             info.name.to_owned(),
-            info.engines.join(", "),
+            info.other_names().collect::<Vec<_>>().join(", "),
             info.order.to_string(),
             info.kind.describe().to_owned(),
             info.accepts.describe().to_owned(),
@@ -105,7 +105,8 @@ fn methods_page() -> String {
             info.order,
             info.kind.describe(),
             info.accepts.describe(),
-            info.preserves,
+            // A bar would end the cell.
+            info.preserves.replace('|', "\\|"),
             if info.reversible { "yes" } else { "no" },
             match info.cost.evaluations {
                 0 => "varies".to_owned(),
@@ -117,8 +118,8 @@ fn methods_page() -> String {
     text += "\n## Damping, other names, sources\n\n";
     for method in METHODS {
         let info = method.info();
-        let called = match info.engines {
-            [] => String::new(),
+        let called = match info.other_names().collect::<Vec<_>>() {
+            names if names.is_empty() => String::new(),
             names => format!(" Also called {}.", names.join(", ")),
         };
         text += &format!(

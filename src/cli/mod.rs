@@ -83,7 +83,7 @@ fn code(error: &anyhow::Error) -> u8 {
     let record = error.downcast_ref::<RecordError>();
     let nowhere = record.is_some_and(|error| !matches!(error, RecordError::Write { .. }));
     let input = error.is::<SceneError>()
-        || error.is::<PlanError>()
+        || matches!(error.downcast_ref(), Some(PlanError::BeyondReach { .. }))
         || error.is::<Wrong>()
         || error.is::<PageError>();
     if input || nowhere { 2 } else { 1 }

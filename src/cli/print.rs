@@ -12,7 +12,10 @@ pub fn out(text: &str) -> anyhow::Result<()> {
         .and_then(|()| stdout.flush());
     match written {
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        other => Ok(other?),
+        Err(error) => Err(anyhow::anyhow!(
+            "standard output: cannot be written: {error}; send it elsewhere"
+        )),
+        Ok(()) => Ok(()),
     }
 }
 

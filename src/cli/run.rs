@@ -1,7 +1,7 @@
 //! `run SCENE`: simulate, record, say what happened.
 
 use super::{Wrong, explain, print, view};
-use crate::cost::Plan;
+use crate::cost::{Plan, PlanError};
 use crate::record::{Heading, Recorder, Summary};
 use crate::scene::{Action, Event, Scene, Stepping};
 use crate::sim::{Blow, Outcome, SimError, Simulation};
@@ -93,6 +93,10 @@ fn plan(scene: &Scene, explain: bool) -> anyhow::Result<Option<Plan>> {
             print::err(&format!("nothing to explain: {error}"));
             Ok(None)
         }
+        Err(PlanError::Sim(error)) => Err(anyhow::anyhow!(
+            "{}: no plan: {error}; nothing is recorded",
+            scene.name
+        )),
         plan => Ok(Some(plan?)),
     }
 }

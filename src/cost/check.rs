@@ -12,8 +12,9 @@ use std::time::Duration;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checked {
     pub q_wb: UnitQuaternion<f64>,
-    /// Of the centre of mass, world, m.
-    pub position_w: Vector3<f64>,
+    /// The centre of mass of a free body in its radii of gyration, `√(tr I / 2m)`, world; nothing for
+    /// a held one, whose attitude says where it is.
+    pub place: Vector3<f64>,
     /// About the reference point, world, kg m²/s.
     pub momentum_w: Vector3<f64>,
     /// Kinetic, J.
@@ -24,10 +25,33 @@ impl Checked {
     pub fn of(subject: &Subject, sample: &Sample) -> Self {
         Self {
             q_wb: sample.motion.q_wb,
-            position_w: sample.motion.position_w,
+            place: match (subject.pivot_b, subject.mass) {
+                (None, Some(mass)) => {
+                    sample.motion.position_w / radius_of_gyration(subject.inertia_c.trace(), mass)
+                }
+                _ => Vector3::zeros(),
+            },
             momentum_w: subject.momentum_w(&sample.motion),
             energy: subject.energy(&sample.motion),
         }
+    }
+}
+
+/// `√(tr I / 2m)`, m: `∫ r² dm` is half the trace.
+pub fn radius_of_gyration(trace: f64, mass: f64) -> f64 {
+    (0.5 * trace / mass).sqrt()
+}
+
+/// How far two states of a body are apart, rad: the angle between the attitudes, or the distance
+/// between the places in radii of gyration, whichever is more. (A point of the body moves by about
+/// that part of its size either way.)
+pub fn apart(a: &Checked, b: &Checked) -> f64 {
+    let (turned, moved) = (angle_between(a.q_wb, b.q_wb), (a.place - b.place).norm());
+    // Not f64::max, which would hide what is not a number.
+    if moved.is_nan() || moved > turned {
+        moved
+    } else {
+        turned
     }
 }
 
@@ -145,12 +169,12 @@ impl Run {
         self.end.len()
     }
 
-    /// The largest angle between the attitudes of two runs over the same instants, rad.
-    pub fn angle(&self, other: &Self) -> f64 {
+    /// The largest distance [`apart`] of two runs over the same instants, rad.
+    pub fn apart(&self, other: &Self) -> f64 {
         debug_assert!(self.is_at_the_instants_of(other));
         let bodies = (0..self.bodies()).map(|k| {
             let pairs = self.of(k).zip(other.of(k));
-            largest(pairs.map(|(a, b)| angle_between(a.q_wb, b.q_wb)))
+            largest(pairs.map(|(a, b)| apart(a, b)))
         });
         largest(bodies)
     }
@@ -187,7 +211,7 @@ impl Run {
 }
 
 /// The largest, a number that is none being the largest of all.
-fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
+pub fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.fold(
         0.0,
         |a: f64, b| if b.is_nan() { f64::INFINITY } else { a.max(b) },

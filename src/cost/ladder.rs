@@ -27,8 +27,8 @@ pub struct Rung {
     pub step: Option<f64>,
     /// For a method that chooses its own.
     pub tolerance: Option<f64>,
-    /// The largest angle from the true attitude at the instants compared, rad, and not less than
-    /// that is known to; infinite where a state was lost.
+    /// The largest distance from the true motion at the instants compared, rad ([`super::apart`]),
+    /// and not less than that is known to; infinite where a state was lost.
     pub error: f64,
     /// The largest difference from the true kinetic energy, as a part of its largest.
     pub energy_drift: f64,
@@ -44,6 +44,8 @@ pub struct Rung {
     pub bytes: Option<u64>,
     /// No cheaper rung is as true.
     pub on_front: bool,
+    /// The method and step that the scene itself states.
+    pub own: bool,
 }
 
 /// Of repeated measurements.
@@ -99,6 +101,7 @@ impl Ladder {
     ) -> Result<Cost, SimError> {
         let between = scene.duration / INSTANTS;
         let record = &scene.record;
+        let stated = (scene.stepping, scene.step);
         let scene = bare(scene, between, 1.0 / between);
         let reference = Reference::of(&scene)?;
         let mut cost = Cost {
@@ -133,6 +136,7 @@ impl Ladder {
                     weigh,
                 };
                 climb.rungs(&mut cost.rungs, &mut watch);
+                climb.own_rung(stated, &mut cost.rungs);
             }
             if watch() {
                 break;
@@ -189,6 +193,23 @@ impl Climb<'_> {
         }
     }
 
+    /// The rung of the scene's own step (the nearest that meets the instants) or tolerance.
+    fn own_rung(&self, (stepping, step): (Stepping, f64), rungs: &mut Vec<Rung>) {
+        let Stepping::Method { method, tolerance } = stepping else {
+            return;
+        };
+        if method.info().name != self.method.info().name {
+            return;
+        }
+        let between = self.scene.step;
+        let own = match method.info().kind {
+            Kind::Closed => None,
+            Kind::Adaptive => self.rung(between, Some(tolerance)),
+            Kind::Fixed => self.rung(between / (between / step).round().max(1.0), None),
+        };
+        rungs.extend(own.map(|rung| Rung { own: true, ..rung }));
+    }
+
     /// The next rung would take too long, or rounding has taken over.
     fn is_as_far_as_it_goes(&self, last: Option<&Rung>, rungs: &[Rung]) -> bool {
         let Some(last) = last else {
@@ -235,7 +256,7 @@ impl Climb<'_> {
                 (
                     // What is nearer to the reference than that is to the truth is not nearer to
                     // the truth for it.
-                    run.angle(truth).max(self.reference.uncertainty),
+                    run.apart(truth).max(self.reference.uncertainty),
                     run.energy_drift(truth),
                     run.momentum_drift(truth),
                     run.outcome.work,
@@ -264,6 +285,7 @@ impl Climb<'_> {
                 (self.weigh)(&scene, &mut Stated(choice))
             },
             on_front: false,
+            own: false,
         })
     }
 }
@@ -303,6 +325,9 @@ fn mark_front(rungs: &mut [Rung]) {
     }
 }
 
+/// Times nearer than this are the same.
+const TIE: f64 = 1.25;
+
 /// What to do, for an accuracy.
 pub struct Advice<'a> {
     /// rad.
@@ -314,10 +339,15 @@ pub struct Advice<'a> {
 }
 
 impl Cost {
-    /// The cheapest rung of some kind that is off by at most `accuracy` rad.
+    /// The cheapest rung of some kind that is off by at most `accuracy` rad; among those as cheap,
+    /// but for what the clock tells apart, one that needs no step.
     pub fn cheapest(&self, accuracy: f64, of: impl Fn(&Rung) -> bool) -> Option<&Rung> {
-        let good = self.rungs.iter().filter(|r| r.error <= accuracy && of(r));
-        good.min_by(|a, b| a.time.median.total_cmp(&b.time.median))
+        let mut good = self.rungs.iter().filter(|r| r.error <= accuracy && of(r));
+        let time = |rung: &&Rung| rung.time.median;
+        let least = good.clone().min_by(|a, b| time(a).total_cmp(&time(b)))?;
+        let stepless = good.find(|rung| rung.step.is_none() && rung.tolerance.is_none());
+        let as_cheap = stepless.filter(|rung| rung.time.median <= TIE * least.time.median);
+        Some(as_cheap.unwrap_or(least))
     }
 
     pub fn advice(&self, accuracy: f64) -> Advice<'_> {
@@ -326,6 +356,11 @@ impl Cost {
             best: self.cheapest(accuracy, |_| true),
             usual: self.cheapest(accuracy, |rung| rung.method == DEFAULT_METHOD),
         }
+    }
+
+    /// The rung of the scene's own method and step.
+    pub fn own(&self) -> Option<&Rung> {
+        self.rungs.iter().find(|rung| rung.own)
     }
 
     /// The least error of all rungs, rad.

@@ -9,7 +9,7 @@ pub mod plot;
 mod race;
 mod reference;
 
-pub use check::Checked;
+pub use check::{Checked, apart};
 pub use ladder::{Advice, Cost, LOST, Ladder, Progress, Rung, Spread, time};
 pub use plan::{Plan, PlanError, Planned};
 pub use race::Race;

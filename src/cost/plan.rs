@@ -9,15 +9,14 @@
 //! Costs are counted (steps times what a step costs, [`crate::integrator::Cost`]), not timed: the
 //! same scene has the same plan on every machine.
 
-use super::check;
+use super::check::{self, Checked, apart, largest, radius_of_gyration};
 use super::reference::{EXACT, Reference, by_truth, truest};
-use crate::body::StateBlock;
+use crate::body::{Inertial, State, StateBlock};
 use crate::integrator::{Interval, Kind, Method, Pieces, Step, Stepper};
-use crate::math::angle_between;
 use crate::scene::{Scene, Stepping};
 use crate::sim::{Choice, Choose, Setting, SimError};
 use crate::trace::short;
-use nalgebra::UnitQuaternion;
+use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
 
 /// What was chosen for some bodies between two events.
@@ -42,7 +41,7 @@ pub struct Plan {
     pub intervals: Vec<Planned>,
     /// Asked for, rad.
     pub accuracy: Option<f64>,
-    /// The largest attitude error there was in a run by this plan, rad, at the instants compared.
+    /// The largest error there was in a run by this plan, rad, at the instants compared.
     pub achieved: f64,
     /// How far the motion it was compared with can be believed, rad.
     pub uncertainty: f64,
@@ -55,8 +54,9 @@ pub struct Plan {
 #[derive(Debug, thiserror::Error)]
 pub enum PlanError {
     #[error(
-        "accuracy = {} rad cannot be had in this scene: 64-bit numbers give {} rad; ask for that or more",
-        short(*.asked), short(*.had)
+        "accuracy = {} rad cannot be had in this scene: with 64-bit numbers its end is known to {} rad; {}",
+        short(*.asked), short(*.had),
+        if *.had < 0.1 { "ask for no less than that" } else { "its errors grow too fast: make it shorter" }
     )]
     BeyondReach {
         asked: f64,
@@ -98,7 +98,7 @@ impl Plan {
             }),
             log: Vec::new(),
         };
-        let achieved = check::run(scene, &mut planner)?.angle(&reference.run);
+        let achieved = check::run(scene, &mut planner)?.apart(&reference.run);
         Ok(Self::new(planner.log, None, achieved, reference))
     }
 
@@ -121,7 +121,7 @@ impl Plan {
                 log: Vec::new(),
             };
             let run = check::run(scene, &mut planner)?;
-            let achieved = run.angle(&reference.run);
+            let achieved = run.apart(&reference.run);
             if achieved <= asked {
                 return Ok(Self::new(planner.log, Some(asked), achieved, reference));
             }
@@ -364,21 +364,31 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// The largest attitude error, rad; infinite where a state is lost.
+    /// The largest error, rad; infinite where a state is lost.
     fn error(&self, states: &[StateBlock], truth: &[StateBlock]) -> f64 {
-        let mut worst = 0.0_f64;
-        for (a, b) in states.iter().zip(truth) {
-            for lane in 0..self.setting.members.len() {
-                let attitude =
-                    |block: &StateBlock| UnitQuaternion::new_unchecked(block.get(lane).q_wp);
-                let off = angle_between(attitude(a), attitude(b));
-                worst = if off.is_nan() {
-                    f64::INFINITY
-                } else {
-                    worst.max(off)
-                };
-            }
-        }
-        worst
+        let lanes = 0..self.setting.members.len();
+        let each = lanes.flat_map(|lane| {
+            let body = self.setting.interval.inertial.get(lane);
+            let checked = move |block: &StateBlock| checked(&body, &block.get(lane));
+            let pairs = states.iter().zip(truth);
+            pairs.map(move |(a, b)| apart(&checked(a), &checked(b)))
+        });
+        largest(each)
+    }
+}
+
+/// What is compared of a body in its principal axes.
+fn checked(body: &Inertial, s: &State) -> Checked {
+    let free = body.inv_mass > 0.0;
+    let radius = radius_of_gyration(body.moments.sum(), body.mass);
+    Checked {
+        q_wb: UnitQuaternion::new_unchecked(s.q_wp),
+        place: if free {
+            s.x_w / radius
+        } else {
+            Vector3::zeros()
+        },
+        momentum_w: body.momentum_w(s),
+        energy: 0.0,
     }
 }

@@ -1,6 +1,7 @@
 //! The work-precision plot: error against time, both logarithmic, a line a method.
 
 use super::ladder::{Cost, LOST, Rung};
+use crate::integrator::METHODS;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::FontStyle;
@@ -30,11 +31,8 @@ const COLOURS: [RGBColor; 8] = [
 pub enum PlotError {
     #[error("{path}: the plot cannot be drawn: {why}")]
     Draw { path: String, why: String },
-    #[error("{path}: the plot cannot be written: {source}; name a place that can be written to")]
-    Write {
-        path: String,
-        source: std::io::Error,
-    },
+    #[error("{path}: the plot cannot be written: {why}; name a place that can be written to")]
+    Write { path: String, why: String },
     #[error("nothing to plot: no run came to an end")]
     Empty,
 }
@@ -71,9 +69,9 @@ pub fn png(cost: &Cost, title: &str, path: &Path) -> Result<(), PlotError> {
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), PlotError> {
-    std::fs::write(path, bytes).map_err(|source| PlotError::Write {
+    std::fs::write(path, bytes).map_err(|error| PlotError::Write {
         path: path.display().to_string(),
-        source,
+        why: error.to_string(),
     })
 }
 
@@ -95,7 +93,11 @@ const FLOOR: f64 = 1e-16;
 
 fn lines(cost: &Cost) -> Vec<Line<'_>> {
     let mut lines: Vec<Line<'_>> = Vec::new();
-    for rung in cost.rungs.iter().filter(|rung| rung.error < LOST) {
+    for rung in cost
+        .rungs
+        .iter()
+        .filter(|rung| rung.error < LOST && !rung.own)
+    {
         match lines.iter_mut().find(|line| line.method == rung.method) {
             Some(line) => line.rungs.push(rung),
             None => lines.push(Line {
@@ -145,7 +147,7 @@ fn draw<B: DrawingBackend>(
         .map_err(words)?;
     chart
         .configure_mesh()
-        .x_desc("largest attitude error (rad)")
+        .x_desc("largest error (rad)")
         .y_desc("wall time per simulated second (s)")
         .label_style(("sans-serif", 15))
         .axis_desc_style(("sans-serif", 17))
@@ -155,8 +157,8 @@ fn draw<B: DrawingBackend>(
         .bold_line_style(RGBColor(220, 220, 220))
         .draw()
         .map_err(words)?;
-    for (k, line) in lines.iter().enumerate() {
-        let look = Look::of(k);
+    for line in &lines {
+        let look = Look::of(line.method);
         let places: Vec<(f64, f64)> = line.rungs.iter().map(|rung| at(rung)).collect();
         let along = places.iter().copied();
         match look.gap {
@@ -164,35 +166,57 @@ fn draw<B: DrawingBackend>(
             gap => chart.draw_series(DashedLineSeries::new(along, 7, gap, look.style())),
         }
         .map_err(words)?;
-        let marks = places.iter().map(|&place| {
-            EmptyElement::at(place) + Rectangle::new([(-3, -3), (3, 3)], look.colour.filled())
-        });
+        let marks = places
+            .iter()
+            .map(|&place| EmptyElement::at(place) + look.mark((0, 0)));
         chart.draw_series(marks).map_err(words)?;
     }
     let front = cost.rungs.iter().filter(|rung| rung.on_front);
+    if let Some(own) = cost.own().filter(|rung| rung.error < LOST) {
+        let cross = Cross::new(at(own), 9, BLACK.stroke_width(3));
+        chart.draw_series([cross]).map_err(words)?;
+    }
     let rings = front.map(|rung| Circle::new(at(rung), 8, BLACK.stroke_width(1)));
     chart.draw_series(rings).map_err(words)?;
-    draw_legend(&lines, &legend).map_err(words)?;
+    draw_legend(&lines, cost.own(), &legend).map_err(words)?;
     area.present().map_err(words)
 }
 
-/// How a method's line looks: eight colours, then the same dashed, then dotted.
+/// How a method's line looks, the same in every plot: eight colours; the next eight dashed, with
+/// diamonds; the next dotted, with triangles.
 struct Look {
     colour: RGBColor,
     /// Pixels between dashes; 0 is an unbroken line.
     gap: i32,
+    /// Corners of its marks, pixels.
+    corners: &'static [(i32, i32)],
 }
 
+const SQUARE: &[(i32, i32)] = &[(-3, -3), (3, -3), (3, 3), (-3, 3)];
+const DIAMOND: &[(i32, i32)] = &[(0, -6), (6, 0), (0, 6), (-6, 0)];
+const TRIANGLE: &[(i32, i32)] = &[(0, -6), (6, 5), (-6, 5)];
+const HOURGLASS: &[(i32, i32)] = &[(-5, -5), (5, -5), (-5, 5), (5, 5)];
+
 impl Look {
-    fn of(k: usize) -> Self {
+    fn of(method: &str) -> Self {
+        let k = METHODS.iter().position(|m| m.info().name == method);
+        let k = k.unwrap_or(METHODS.len());
+        let (gap, corners) =
+            [(0, SQUARE), (5, DIAMOND), (14, TRIANGLE), (9, HOURGLASS)][(k / COLOURS.len()).min(3)];
         Self {
             colour: COLOURS[k % COLOURS.len()],
-            gap: [0, 5, 14][(k / COLOURS.len()).min(2)],
+            gap,
+            corners,
         }
     }
 
     fn style(&self) -> ShapeStyle {
         self.colour.stroke_width(2)
+    }
+
+    fn mark(&self, (x, y): (i32, i32)) -> Polygon<(i32, i32)> {
+        let corners: Vec<(i32, i32)> = self.corners.iter().map(|(a, b)| (x + a, y + b)).collect();
+        Polygon::new(corners, self.colour.filled())
     }
 }
 
@@ -202,11 +226,12 @@ const LINE: i32 = 22;
 
 fn draw_legend<B: DrawingBackend>(
     lines: &[Line<'_>],
+    own: Option<&Rung>,
     area: &DrawingArea<B, Shift>,
 ) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
     let words = ("sans-serif", 15).into_font().color(&BLACK);
     for (k, line) in lines.iter().enumerate() {
-        let (look, y) = (Look::of(k), 52 + LINE * k as i32);
+        let (look, y) = (Look::of(line.method), 52 + LINE * k as i32);
         let dash = if look.gap == 0 { 34 } else { 7 };
         let mut x = 4;
         while x < 38 {
@@ -214,16 +239,25 @@ fn draw_legend<B: DrawingBackend>(
             area.draw(&PathElement::new([(x, y), (end, y)], look.style()))?;
             x = end + look.gap.max(1);
         }
-        area.draw(&Rectangle::new(
-            [(18, y - 3), (24, y + 3)],
-            look.colour.filled(),
-        ))?;
+        area.draw(&look.mark((21, y)))?;
         area.draw(&Text::new(line.method, (46, y - 8), words.clone()))?;
     }
     let y = 58 + LINE * lines.len() as i32;
     area.draw(&Circle::new((21, y), 8, BLACK.stroke_width(1)))?;
     area.draw(&Text::new("no other is both", (46, y - 8), words.clone()))?;
-    area.draw(&Text::new("cheaper and truer", (46, y + 9), words))
+    area.draw(&Text::new("cheaper and truer", (46, y + 9), words.clone()))?;
+    if let Some(own) = own {
+        let y = y + 44;
+        if own.error < LOST {
+            area.draw(&Cross::new((21, y), 9, BLACK.stroke_width(3)))?;
+        }
+        area.draw(&Text::new("your scene:", (46, y - 8), words.clone()))?;
+        area.draw(&Text::new(own.setting(), (46, y + 9), words.clone()))?;
+        if own.error >= LOST {
+            area.draw(&Text::new("(a radian off or more)", (46, y + 26), words))?;
+        }
+    }
+    Ok(())
 }
 
 /// Once a process.

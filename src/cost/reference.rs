@@ -39,7 +39,7 @@ impl Reference {
         let mut second = Truest::new(1);
         let other = check::run(scene, &mut second)?;
         Ok(Self {
-            uncertainty: run.angle(&other).max(EXACT),
+            uncertainty: run.apart(&other).max(EXACT),
             run,
             by: first.used,
             checked_by: second.used,

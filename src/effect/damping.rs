@@ -40,6 +40,11 @@ pub struct Decay {
 }
 
 impl Decay {
+    /// Whether it was written as a factor per step.
+    pub fn is_per_step(&self) -> bool {
+        self.linear.written.is_some() || self.angular.written.is_some()
+    }
+
     /// 1/s.
     pub fn linear_rate(&self) -> f64 {
         self.linear.rate

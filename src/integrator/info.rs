@@ -120,6 +120,15 @@ impl Damping {
 }
 
 impl MethodInfo {
+    /// The names of engines by which it is known besides its own.
+    pub fn other_names(&self) -> impl Iterator<Item = &'static str> {
+        let own = self.name;
+        self.engines
+            .iter()
+            .copied()
+            .filter(move |name| *name != own)
+    }
+
     /// Why this load would cost the method its order, if it would.
     pub fn refuses(&self, interval: &Interval) -> Option<Refusal> {
         let (load, inertial) = (&interval.load, &interval.inertial);

@@ -195,7 +195,7 @@ fn price_tab(blueprint: &mut Blueprint<'_>) -> Result<Part, RecordError> {
     let name = "what accuracy costs";
     let plot = blueprint.view(View {
         class: "2D",
-        name: "wall time per simulated second (up) against attitude error (right)",
+        name: "wall time per simulated second (up) against error (right)",
         origin: price::PATH,
         contents: vec![format!("+ {}/**", price::PATH)],
         properties: Vec::new(),

@@ -22,7 +22,7 @@ fn place(error: f64, time: f64) -> [f32; 2] {
 }
 
 fn shown(rung: &&Rung) -> bool {
-    rung.error < LOST
+    rung.error < LOST && !rung.own
 }
 
 pub fn write(file: &mut RrdFile, cost: &Cost) -> Result<(), RecordError> {

@@ -57,6 +57,9 @@ fn read(top: &Table<'_>, name: &str, source: &str, problems: &mut Problems) -> O
     let clock = record.as_ref().map_or(DEFAULT_RATE, Record::fastest);
     let (stepping, step) = stepping(top, duration, clock, problems);
     let effects = effects(top, step.unwrap_or(DEFAULT_STEP), problems);
+    if let Some(Stepping::Accuracy(_)) = stepping {
+        no_factor_per_step(top, &effects, problems);
+    }
     let gyroscopic = effects.iter().any(|(name, _)| *name == "gyroscopic");
     let bodies = body::read_all(&top.tables("body", problems), gyroscopic, problems);
     if bodies.declared == 0 && !top.has("body") {
@@ -152,7 +155,7 @@ fn stepping(
             if found.is_none() {
                 let names = METHODS.iter().flat_map(|m| {
                     let info = m.info();
-                    std::iter::once(info.name).chain(info.engines.iter().copied())
+                    std::iter::once(info.name).chain(info.other_names())
                 });
                 let remedy = nearest(name, &names.collect::<Vec<_>>());
                 node.problem(format!("is no method; {remedy}"), problems);
@@ -312,6 +315,25 @@ fn effects(top: &Table<'_>, step: f64, problems: &mut Problems) -> Vec<(&'static
     }
     table.check_keys(problems);
     called
+}
+
+/// A factor per step says nothing where the program chooses the step.
+fn no_factor_per_step(
+    top: &Table<'_>,
+    effects: &[(&'static str, Called)],
+    problems: &mut Problems,
+) {
+    for (name, effect) in effects {
+        if let Called::Decay(decay) = effect
+            && decay.is_per_step()
+        {
+            let table = top.table("effects", problems);
+            let why = "is by a factor per step, and with `accuracy` there is no step it could be meant for; write a rate (1/s)";
+            if let Some(node) = table.and_then(|table| table.get(name)) {
+                node.problem(why, problems);
+            }
+        }
+    }
 }
 
 fn effect(

@@ -29,8 +29,8 @@ pub struct Group {
     kept: Vec<StateBlock>,
     /// By name.
     pub method: &'static str,
-    /// Whether it chooses its own steps.
-    pub steps_by_itself: bool,
+    /// How it gets through time.
+    pub steps: Option<Kind>,
     /// What the steppers before this one did.
     done: Work,
 }
@@ -101,7 +101,7 @@ impl Group {
             before: None,
             kept: Vec::new(),
             method: "",
-            steps_by_itself: false,
+            steps: None,
             done: Work::default(),
         };
         for (lane, body) in bodies.iter().enumerate() {
@@ -126,7 +126,7 @@ impl Group {
         interval.tolerance = choice.tolerance;
         self.done = self.work();
         self.method = choice.method.info().name;
-        self.steps_by_itself = choice.method.info().kind == Kind::Adaptive;
+        self.steps = Some(choice.method.info().kind);
         let stepper = choice.method.start(interval, t, &self.state);
         self.stepper = Some(match choice.pieces {
             1 => stepper,

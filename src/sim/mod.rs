@@ -11,7 +11,7 @@ pub use choose::{Choice, Choose, Setting, Stated};
 pub use sizes::Sizes;
 
 use crate::body::LANES;
-use crate::integrator::{Step, Work};
+use crate::integrator::{Kind, Step, Work};
 use crate::scene::{Action, Event, Scene, Stepping};
 use crate::trace::{
     Instant, Motion, Note, NoteKind, PointForce, Sample, Sink, SinkError, Subject, Track, short,
@@ -84,12 +84,13 @@ pub struct Jump {
 /// Why a run stopped before its end.
 #[derive(Debug, thiserror::Error)]
 pub enum SimError {
-    #[error("{body} is no longer finite at t = {time} s, step {step}, by {method}: {cause}")]
+    #[error("{body} is no longer finite at t = {time} s, step {step}{by}: {cause}")]
     NotFinite {
         body: String,
         time: f64,
         step: u64,
-        method: &'static str,
+        /// `, by METHOD`, once one has set out.
+        by: String,
         cause: String,
     },
     #[error("the scene states an accuracy and no method: it has to be planned first")]
@@ -368,7 +369,10 @@ impl<'s> Simulation<'s> {
             body: self.subjects[body].name.clone(),
             time: at.time,
             step: at.step,
-            method: self.group_of(body).method,
+            by: match self.group_of(body).method {
+                "" => String::new(),
+                method => format!(", by {method}"),
+            },
             cause: self.cause(body),
         };
         let note = Note {
@@ -391,17 +395,17 @@ impl<'s> Simulation<'s> {
         /// Radians a step, beyond which a term of second order in ω h is no longer small.
         const FAR: f64 = 0.1;
         let group = self.group_of(body);
-        if group.steps_by_itself {
+        if group.steps == Some(Kind::Adaptive) {
             return "no step of its own was short enough to follow the motion; a force or torque there grows without bound, or the tolerance is below what 64-bit numbers resolve".to_owned();
         }
         let turned = group.turn_in_a_step(body, self.scene.step);
-        if group.is_gyroscopic() && turned > FAR {
+        if group.steps == Some(Kind::Fixed) && group.is_gyroscopic() && turned > FAR {
             let turned = short(turned);
             return format!(
                 "it turned {turned} rad a step, too far for the gyroscopic term; take a smaller step or another method"
             );
         }
-        "a force, an impulse, a speed or a mass is too large or too small for 64-bit numbers; look at the events and the start".to_owned()
+        "a force, an impulse, a speed, a mass or a ratio of moments is too large or too small for 64-bit numbers, or for this method at this step; look at the events and the start".to_owned()
     }
 
     /// Ends and begins events and writes the log; true where a velocity jumped.
