@@ -101,7 +101,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         print::out(&table(&scene, &cost, &advice, arguments.all))?;
     }
     if !arguments.table {
-        files(&places, &scene, &cost, &advice)?;
+        files(&places, &scene, &ladder.methods, &cost, &advice)?;
     }
     Ok(())
 }
@@ -441,11 +441,17 @@ impl Places {
 }
 
 /// Writes the plots and the recording and says where they are.
-fn files(places: &Places, scene: &Scene, cost: &Cost, advice: &Advice<'_>) -> anyhow::Result<()> {
+fn files(
+    places: &Places,
+    scene: &Scene,
+    methods: &[&'static dyn Method],
+    cost: &Cost,
+    advice: &Advice<'_>,
+) -> anyhow::Result<()> {
     let title = format!("What accuracy costs: {}", scene.title);
     plot::svg(cost, &title, &places.svg)?;
     plot::png(cost, &title, &places.png)?;
-    record(scene, cost, advice, &places.recording)?;
+    record(scene, methods, cost, advice, &places.recording)?;
     print::err(&format!(
         "{}, {}, {recording}\nto open it: torquescope view {recording}",
         places.svg.display(),
@@ -459,9 +465,15 @@ fn files(places: &Places, scene: &Scene, cost: &Cost, advice: &Advice<'_>) -> an
 const FRAME: f64 = 1.0 / 60.0;
 
 /// Records the plot, and the body by every method beside the true one.
-fn record(scene: &Scene, cost: &Cost, advice: &Advice<'_>, path: &Path) -> anyhow::Result<()> {
+fn record(
+    scene: &Scene,
+    methods: &[&'static dyn Method],
+    cost: &Cost,
+    advice: &Advice<'_>,
+    path: &Path,
+) -> anyhow::Result<()> {
     let size = Heading::of(scene, &Simulation::new(scene)).size();
-    let mut race = Race::new(scene, FRAME, 2.5 * size)?;
+    let mut race = Race::new(scene, methods, FRAME, 2.5 * size)?;
     let streams = ["omega", "momentum", "energy", "error", "drift"];
     let streams = streams.iter().filter_map(|name| StreamSet::of(name));
     race.scene.record.streams = streams.fold(StreamSet::none(), StreamSet::with);

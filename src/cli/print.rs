@@ -1,7 +1,9 @@
 //! Printing: tables, and a pipe that closes early is no error.
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
+use std::time::Duration;
 
 /// Prints to stdout. A reader that has seen enough (`| head`) is not a failure.
 pub fn out(text: &str) -> anyhow::Result<()> {
@@ -55,4 +57,14 @@ fn framed(header: &[&str], rows: Vec<Vec<String>>, arrangement: ContentArrangeme
         column.set_cell_alignment(CellAlignment::Left);
     }
     table.to_string()
+}
+
+/// Says on a terminal what is being waited for, and how long.
+pub fn spinner(message: &'static str) -> ProgressBar {
+    let spinner = ProgressBar::new_spinner().with_message(message);
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}, {elapsed}") {
+        spinner.set_style(style);
+    }
+    spinner.enable_steady_tick(Duration::from_millis(200));
+    spinner
 }

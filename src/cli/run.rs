@@ -87,7 +87,10 @@ fn plan(scene: &Scene, explain: bool) -> anyhow::Result<Option<Plan>> {
     if !needed && !explain {
         return Ok(None);
     }
-    match Plan::of(scene) {
+    let spinner = print::spinner("planning: measuring methods on each interval (ctrl-C stops)");
+    let plan = Plan::of(scene);
+    spinner.finish_and_clear();
+    match plan {
         // What a stated method comes to is recorded, whatever becomes of its explanation.
         Err(error) if !needed => {
             print::err(&format!("nothing to explain: {error}"));

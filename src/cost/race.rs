@@ -4,7 +4,7 @@
 use super::check;
 use super::ladder::refusal;
 use super::reference::truest;
-use crate::integrator::{Kind, METHODS, Method};
+use crate::integrator::{Kind, Method};
 use crate::math::angle_between;
 use crate::scene::{Action, Framed, Scene};
 use crate::sim::{Choice, Choose, Setting, SimError, Simulation};
@@ -25,16 +25,21 @@ pub struct Race {
 const TOLERANCE: f64 = 1e-6;
 
 impl Race {
-    /// Every method that takes the scene's torques and keeps to the end, at steps of `step` s: of
+    /// Those of the methods that take the scene's torques and keep to the end, at steps of `step` s: of
     /// the body that is there first. `apart`: how far they stand from each other, m.
-    pub fn new(scene: &Scene, step: f64, apart: f64) -> Result<Self, SimError> {
+    pub fn new(
+        scene: &Scene,
+        methods: &[&'static dyn Method],
+        step: f64,
+        apart: f64,
+    ) -> Result<Self, SimError> {
         let mut alone = scene.clone();
         alone.bodies.truncate(1);
         alone.events.retain(|event| event.body == 0);
         alone.step = step.min(scene.duration);
         let mut runners = vec![None];
         let mut lost = Vec::new();
-        for method in METHODS.iter().copied() {
+        for method in methods.iter().copied() {
             if method.info().kind == Kind::Closed || refusal(&alone, method).is_some() {
                 continue;
             }

@@ -258,7 +258,10 @@ impl Body {
         } else {
             1e-6 * span
         };
-        let trial = trial.min(span);
+        // What starts at next to nothing is no unit either: were such a step too long, it would be
+        // refused and shortened.
+        let shortest = 1e-12 * span;
+        let trial = trial.clamp(shortest, span.max(shortest));
         let ahead = along(&self.y, trial, &self.slope);
         let rate = self.rate(interval, self.reached + trial, &ahead);
         let change = along(&rate, -1.0, &self.slope);
@@ -269,7 +272,9 @@ impl Body {
         } else {
             span
         };
-        by_error.min(100.0 * trial).min(span)
+        by_error
+            .min(100.0 * trial)
+            .clamp(shortest, span.max(shortest))
     }
 
     /// The step tried: stages 1 to 11 and the end. The error, 1 being what is allowed.

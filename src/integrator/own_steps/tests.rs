@@ -472,10 +472,21 @@ fn a_body_at_rest_can_be_pushed_at_the_tightest_tolerance() {
         force: Frame::World(force_w),
         point: Frame::Principal(Vector3::new(0.2, 0.5, -0.4)),
     }) as Arc<dyn Effect>);
-    let bodies = block(Vector3::new(0.5, 0.8, 1.1), rest());
-    for method in methods_for(&load, &bodies) {
+    // At rest, and next to it.
+    for spin in [0.0, 1e-300, 1e-160] {
+        let start = State {
+            omega_w: Vector3::new(spin, 2.0 * spin, spin),
+            ..rest()
+        };
+        pushed_from(block(Vector3::new(0.5, 0.8, 1.1), start), &load, force_w);
+    }
+}
+
+#[track_caller]
+fn pushed_from(bodies: Bodies, load: &Load, force_w: Vector3<f64>) {
+    for method in methods_for(load, &bodies) {
         for tolerance in [1e-9, 1e-12, 1e-15, 1.2e-16] {
-            let end = end(method, &load, &bodies, 1.0, tolerance);
+            let end = end(method, load, &bodies, 1.0, tolerance);
             // The force keeps its direction and the mass is 1: x = F t²/2, to roundings of a few
             // steps or to the tolerance.
             let gap = (end.x_w - force_w * 0.5).norm();

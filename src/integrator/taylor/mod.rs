@@ -118,6 +118,10 @@ const NONE: usize = rows(0);
 const ONE: usize = rows(1);
 const AXES: usize = rows(3);
 
+/// Below this (rad/s) a spin is no measure of time: its powers would underflow, and what a torque makes
+/// of it within a step is far more.
+const SLOWEST: f64 = 1e-12;
+
 impl Body {
     fn new(law: Law, tolerance: f64, t: f64, start: &State) -> Self {
         let order = order(tolerance);
@@ -141,7 +145,7 @@ impl Body {
             set_out: t,
             from: t,
             reached: t,
-            unit: 1.0 / power_of_two(omega_p.amax()),
+            unit: 1.0 / power_of_two(omega_p.amax().max(SLOWEST)),
             series: vec![Four::default(); width * (order + 1)],
             turn: Turn {
                 q: Four(start.q_wp.coords.into()),
