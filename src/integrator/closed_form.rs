@@ -15,7 +15,8 @@
 //! Damping: τ = -c I ω makes dL/dt = -c L; with L = e^{-ct} M and ds = e^{-ct} dt, M and q obey the undamped
 //! equations in s.
 
-use super::flight::{Elapsed, Flight};
+use super::coast::Passage;
+use super::flight::Flight;
 use super::own_steps::nowhere;
 use super::{
     Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Step, Stepper, Work,
@@ -121,13 +122,12 @@ impl Stepper for Run {
 
     fn state(&self) -> StateBlock {
         let t = self.now - self.from;
-        let linear = Elapsed::linear(self.decay.as_ref(), t);
-        let angular = Elapsed::angular(self.decay.as_ref(), t);
+        let gone = Passage::of(t, self.decay.as_ref());
         let mut block = self.empty;
         for (lane, path) in self.paths.iter().enumerate() {
             let state = match self.refused {
                 true => nowhere(),
-                false => path.at(linear, angular),
+                false => path.at(&gone),
             };
             block.set(lane, state);
         }
@@ -147,14 +147,14 @@ impl Stepper for Run {
 }
 
 impl Path {
-    fn at(&self, linear: Elapsed, angular: Elapsed) -> State {
-        let (x_w, v_w) = self.flight.at(linear);
-        let (q_wp, omega_w) = self.turning.at(angular.first, &self.start);
+    fn at(&self, gone: &Passage) -> State {
+        let (x_w, v_w) = self.flight.at(&gone.linear);
+        let (q_wp, omega_w) = self.turning.at(gone.angular.time, &self.start);
         State {
             x_w,
             v_w,
             q_wp,
-            omega_w: omega_w * angular.factor,
+            omega_w: omega_w * gone.angular.factor,
         }
     }
 }
@@ -203,7 +203,7 @@ mod tests {
             flight: Flight::new(&start, Vector3::zeros()),
             turning: Turning::new(false, &body, &start),
         };
-        let end = path.at(Elapsed::linear(None, t), Elapsed::angular(None, t));
+        let end = path.at(&Passage::of(t, None));
         let (sin, cos) = libm::sincos(0.5 * omega * t);
         let exact = Quaternion::new(cos, 0.0, sin, 0.0) * q0;
         // Sine, cosine and a product, each rounded.

@@ -7,9 +7,9 @@
 //!
 //! Undamped T = s = t and P = t²/2. Nothing accumulates: errors do not grow with the number of steps.
 
-use super::flight::{Elapsed, Flight};
+use super::flight::Flight;
 use crate::body::{Inertial, InertialBlock, LANES, State};
-use crate::effect::{Decay, Depends, Frame, Load, Term};
+use crate::effect::{Decay, Depends, Elapsed, Frame, Load, Term};
 use crate::exact::FreeMotion;
 use crate::math::turned;
 use nalgebra::{Quaternion, Vector3};
@@ -75,9 +75,9 @@ impl Coast {
     /// `t` seconds after it set out.
     pub fn at(&self, t: f64, decay: Option<&Decay>) -> State {
         let gone = Passage::of(t, decay);
-        let (x_w, v_w) = gone.translated(&self.start, self.a_w);
-        let left = gone.angular_left();
-        let q_wp = self.turning.attitude(gone.turning());
+        let (x_w, v_w) = Flight::new(&self.start, self.a_w).at(&gone.linear);
+        let left = gone.angular.factor;
+        let q_wp = self.turning.attitude(gone.angular.time);
         let omega_w = match self.gyroscopic {
             true => omega_w(&self.body, q_wp, self.momentum_w * left),
             false => self.start.omega_w * left,
@@ -94,33 +94,28 @@ impl Coast {
 /// A stretch of time as either velocity counts it.
 #[derive(Clone, Copy, Debug)]
 pub struct Passage {
-    linear: Elapsed,
-    angular: Elapsed,
+    pub linear: Elapsed,
+    pub angular: Elapsed,
 }
 
 impl Passage {
     #[inline]
     pub fn of(h: f64, decay: Option<&Decay>) -> Self {
+        let undamped = Elapsed::undamped(h);
         Self {
-            linear: Elapsed::linear(decay, h),
-            angular: Elapsed::angular(decay, h),
+            linear: decay.map_or(undamped, |decay| decay.linear(h)),
+            angular: decay.map_or(undamped, |decay| decay.angular(h)),
         }
     }
 
-    /// `(1 - e^{-ch})/c`, s: the undamped time in which a free body turns as far.
-    pub fn turning(&self) -> f64 {
-        self.angular.first
-    }
-
-    /// `e^{-ch}`: what is left of L.
-    pub fn angular_left(&self) -> f64 {
-        self.angular.factor
-    }
-
-    /// Place and velocity after it under a constant acceleration.
-    #[inline]
-    pub fn translated(&self, s: &State, a_w: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
-        Flight::new(s, a_w).at(self.linear)
+    /// The state after it where no force acts, but for what turns.
+    #[inline(always)]
+    pub fn translated(&self, s: State) -> State {
+        State {
+            x_w: s.x_w + s.v_w * self.linear.time,
+            v_w: s.v_w * self.linear.factor,
+            ..s
+        }
     }
 }
 

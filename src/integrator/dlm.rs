@@ -131,11 +131,11 @@ fn drift(
 ) {
     for lane in 0..LANES {
         let (mut state, l) = (block.get(lane), momentum_w.get(lane));
-        let rates = inertial.get(lane).inv_moments * by.turning();
-        (state.x_w, state.v_w) = by.translated(&state, Vector3::zeros());
+        let rates = inertial.get(lane).inv_moments * by.angular.time;
+        state = by.translated(state);
         state.q_wp = five_turns(rates, state.q_wp, l);
         block.set(lane, state);
-        momentum_w.set(lane, l * by.angular_left());
+        momentum_w.set(lane, l * by.angular.factor);
     }
 }
 

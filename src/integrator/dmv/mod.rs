@@ -18,6 +18,7 @@ mod preprocessed;
 pub use preprocessed::Preprocessed;
 
 use super::coast::{Passage, coasting, omega_w};
+use super::flight::Flight;
 use super::own_steps::nowhere;
 use super::{
     Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Step, Stepper, Work,
@@ -121,8 +122,8 @@ struct Run {
 impl Run {
     fn step(&mut self, step: &Step) {
         let decay = self.decay.as_ref();
-        let left = Passage::of(step.from - self.set_out, decay).angular_left();
-        let s = Passage::of(step.h, decay).turning();
+        let left = decay.map_or(1.0, |decay| decay.angular_factor(step.from - self.set_out));
+        let s = decay.map_or(step.h, |decay| decay.angular(step.h).time);
         for body in &mut self.bodies {
             body.q_wp = (body.moments).attitude(s, body.q_wp, body.momentum_w * left);
         }
@@ -134,7 +135,7 @@ impl Body {
     /// `t` seconds after the start.
     fn state(&self, t: f64, decay: Option<&Decay>) -> State {
         let gone = Passage::of(t, decay);
-        let (x_w, v_w) = gone.translated(&self.start, self.a_w);
+        let (x_w, v_w) = Flight::new(&self.start, self.a_w).at(&gone.linear);
         State {
             x_w,
             v_w,
@@ -142,7 +143,7 @@ impl Body {
             omega_w: omega_w(
                 &self.inertial,
                 self.q_wp,
-                self.momentum_w * gone.angular_left(),
+                self.momentum_w * gone.angular.factor,
             ),
         }
     }

@@ -141,9 +141,9 @@ impl Kicked {
     /// A: the body's state but for ω, which no kick looks at.
     #[inline]
     fn drift(&mut self, by: &Passage, s: &mut State) {
-        (s.x_w, s.v_w) = by.translated(s, Vector3::zeros());
-        s.q_wp = self.turning.attitude(by.turning(), s.q_wp, self.stays_w);
-        self.stays_w *= by.angular_left();
+        *s = by.translated(*s);
+        s.q_wp = (self.turning).attitude(by.angular.time, s.q_wp, self.stays_w);
+        self.stays_w *= by.angular.factor;
     }
 
     fn omega_w(&self, s: &State) -> Vector3<f64> {

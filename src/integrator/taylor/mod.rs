@@ -25,7 +25,8 @@ mod law;
 mod recurrence;
 mod travel;
 
-use super::flight::{Elapsed, Flight};
+use super::coast::Passage;
+use super::flight::Flight;
 use super::own_steps::{Run, Walk, nowhere};
 use super::{Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Stepper, Work};
 use crate::body::{State, StateBlock};
@@ -275,7 +276,8 @@ impl Walk for Body {
         };
         let place = match &self.route {
             Route::Flight(flight) => {
-                flight.at(Elapsed::linear(interval.load.decay(), t - self.set_out))
+                let gone = Passage::of(t - self.set_out, interval.load.decay());
+                flight.at(&gone.linear)
             }
             Route::Journey(journey) if ends => journey.end(),
             Route::Journey(journey) => journey.at(s),
