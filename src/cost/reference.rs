@@ -82,7 +82,7 @@ pub fn by_truth(interval: &Interval) -> Vec<&'static dyn Method> {
     let mut methods: Vec<&'static dyn Method> = METHODS
         .iter()
         .copied()
-        .filter(|method| method.info().refuses(interval).is_none())
+        .filter(|method| (method.info().refuses(&interval.load, &interval.inertial)).is_none())
         .collect();
     methods.sort_by_key(|method| {
         let info = method.info();

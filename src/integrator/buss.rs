@@ -96,9 +96,9 @@ impl Method for Buss {
         self.info
     }
 
-    fn start(&self, interval: Interval, _t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+    fn set_out(&self, interval: Interval, _t: f64, state: &StateBlock) -> Box<dyn Stepper> {
         let mut spin_w = [Vector3::zeros(); LANES];
-        for lane in scalar::occupied(&interval) {
+        for lane in interval.lanes() {
             let s = state.get(lane);
             spin_w[lane] = match interval.load.gyroscopic() {
                 true => interval.inertial.get(lane).momentum_w(&s),
@@ -166,7 +166,7 @@ impl Run {
         let before = self.kicks(t, &start);
         let falls = before.map(|_| (linear.fall(), angular.fall()));
         let (linear_fall, angular_fall) = falls.unwrap_or_default();
-        for lane in scalar::occupied(&self.interval) {
+        for lane in self.interval.lanes() {
             let (body, s) = (self.interval.inertial.get(lane), start.get(lane));
             let kick = before.map(|kicks| kicks[lane]);
             let turn = self.turn(angular.time, angular_fall, lane, &body, &s, kick);
@@ -183,7 +183,7 @@ impl Run {
         let Some(after) = self.kicks(t + h, &self.state) else {
             return;
         };
-        for lane in scalar::occupied(&self.interval) {
+        for lane in self.interval.lanes() {
             let (body, s) = (self.interval.inertial.get(lane), self.state.get(lane));
             let (one, two) = (before[lane], after[lane]);
             self.spin_w[lane] += (two.spin_rate_w - one.spin_rate_w) * (angular_fall / h);

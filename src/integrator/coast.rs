@@ -7,8 +7,9 @@
 //!
 //! Undamped T = s = t and P = t²/2. Nothing accumulates: errors do not grow with the number of steps.
 
+use super::Interval;
 use super::flight::Flight;
-use crate::body::{Inertial, InertialBlock, LANES, State};
+use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
 use crate::effect::{Decay, Depends, Elapsed, Frame, Load, Term};
 use crate::exact::FreeMotion;
 use crate::math::turned;
@@ -42,51 +43,107 @@ pub fn coasting(load: &Load, inertial: &InertialBlock) -> [Option<Vector3<f64>>;
     accelerations
 }
 
-/// A body on its way.
-#[derive(Clone, Debug)]
-pub struct Coast {
-    body: Inertial,
-    gyroscopic: bool,
-    start: State,
-    momentum_w: Vector3<f64>,
-    /// m/s².
-    a_w: Vector3<f64>,
-    turning: FreeMotion,
+/// The accelerations (m/s²) of the bodies of a block on which nothing acts but forces that are constant.
+pub fn constant_accelerations(
+    interval: &Interval,
+    t: f64,
+    state: &StateBlock,
+) -> [Vector3<f64>; LANES] {
+    let wrench = interval.load.wrench(t, &interval.inertial, state);
+    let wrench = wrench.unwrap_or_default();
+    std::array::from_fn(|lane| wrench.get(lane).force_w * interval.inertial.get(lane).inv_mass)
 }
 
-impl Coast {
-    pub fn new(body: Inertial, gyroscopic: bool, start: State, a_w: Vector3<f64>) -> Self {
-        // Constant ω is how a sphere turns, whatever its size.
-        let moments = match gyroscopic {
-            true => body.moments,
-            false => Vector3::repeat(1.0),
-        };
-        let omega_p = start.to_principal(start.omega_w);
+/// How a body goes that no torque turns and a constant force pushes, but for its attitude.
+#[derive(Clone, Debug)]
+pub struct Course {
+    inertial: Inertial,
+    flight: Flight,
+    /// At the start, kg m²/s.
+    momentum_w: Vector3<f64>,
+}
+
+impl Course {
+    /// From a start, under a constant acceleration, m/s².
+    pub fn new(inertial: Inertial, start: &State, a_w: Vector3<f64>) -> Self {
         Self {
-            gyroscopic,
-            momentum_w: body.momentum_w(&start),
-            start,
-            a_w,
-            turning: FreeMotion::new(moments, start.q_wp, omega_p),
-            body,
+            flight: Flight::new(start, a_w),
+            momentum_w: inertial.momentum_w(start),
+            inertial,
         }
     }
 
-    /// `t` seconds after it set out.
-    pub fn at(&self, t: f64, decay: Option<&Decay>) -> State {
-        let gone = Passage::of(t, decay);
-        let (x_w, v_w) = Flight::new(&self.start, self.a_w).at(&gone.linear);
-        let left = gone.angular.factor;
-        let q_wp = self.turning.attitude(gone.angular.time);
-        let omega_w = match self.gyroscopic {
-            true => omega_w(&self.body, q_wp, self.momentum_w * left),
-            false => self.start.omega_w * left,
-        };
+    /// L (world, kg m²/s) when `left` of it, `e^{-ct}`, is left.
+    pub fn momentum_w(&self, left: f64) -> Vector3<f64> {
+        self.momentum_w * left
+    }
+
+    /// Where it is by now with that attitude, `ω = R I⁻¹ Rᵀ L`.
+    pub fn at(&self, gone: &Passage, q_wp: Quaternion<f64>) -> State {
+        let (x_w, v_w) = self.flight.at(&gone.linear);
         State {
             x_w,
             v_w,
             q_wp,
-            omega_w,
+            omega_w: omega_w(&self.inertial, q_wp, self.momentum_w(gone.angular.factor)),
+        }
+    }
+}
+
+/// A body on its way, at any time at once.
+#[derive(Clone, Debug)]
+pub struct Coast {
+    course: Course,
+    turning: Turning,
+}
+
+/// How it turns, undamped.
+#[derive(Clone, Debug)]
+enum Turning {
+    /// L stays.
+    Euler(FreeMotion),
+    /// ω stays: what the world turns the starting attitude by.
+    Steady {
+        turn: FreeMotion,
+        q_wp: Quaternion<f64>,
+        omega_w: Vector3<f64>,
+    },
+}
+
+impl Coast {
+    pub fn new(inertial: Inertial, gyroscopic: bool, start: &State, a_w: Vector3<f64>) -> Self {
+        let State { q_wp, omega_w, .. } = *start;
+        let turning = if gyroscopic {
+            let omega_p = start.to_principal(omega_w);
+            Turning::Euler(FreeMotion::new(inertial.moments, q_wp, omega_p))
+        } else {
+            // A body with equal moments turns steadily.
+            let (sphere, upright) = (Vector3::repeat(1.0), Quaternion::identity());
+            Turning::Steady {
+                turn: FreeMotion::new(sphere, upright, omega_w),
+                q_wp,
+                omega_w,
+            }
+        };
+        Self {
+            course: Course::new(inertial, start, a_w),
+            turning,
+        }
+    }
+
+    /// The state by now.
+    pub fn at(&self, gone: &Passage) -> State {
+        let s = gone.angular.time;
+        match &self.turning {
+            Turning::Euler(motion) => self.course.at(gone, motion.attitude(s)),
+            Turning::Steady {
+                turn,
+                q_wp,
+                omega_w,
+            } => State {
+                omega_w: omega_w * gone.angular.factor,
+                ..self.course.at(gone, turn.attitude(s) * q_wp)
+            },
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What a method promises, what it takes and where it comes from.
 
-use super::Interval;
-use crate::effect::Depends;
+use crate::body::InertialBlock;
+use crate::effect::{Depends, Load};
 
 #[derive(Clone, Copy, Debug)]
 pub struct MethodInfo {
@@ -121,8 +121,7 @@ impl Damping {
 
 impl MethodInfo {
     /// Why this load would cost the method its order, if it would.
-    pub fn refuses(&self, interval: &Interval) -> Option<Refusal> {
-        let (load, inertial) = (&interval.load, &interval.inertial);
+    pub fn refuses(&self, load: &Load, inertial: &InertialBlock) -> Option<Refusal> {
         let refusal = |why: &str| Some(Refusal(format!("{} {why}", self.name)));
         if self.damping == Damping::Refused && load.decay().is_some() {
             return refusal("takes no damping");

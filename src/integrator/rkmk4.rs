@@ -20,7 +20,7 @@
 //! Numerical Integration, IV.8. MuJoCo 4.0: `mj_RungeKutta` (engine_forward.c).
 
 use super::one_step::OneStep;
-use super::scalar::{each, occupied};
+use super::scalar::each;
 use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{Inertial, LANES, State, StateBlock};
 use crate::effect::{Load, Wrench};
@@ -87,7 +87,7 @@ impl OneStep for Rkmk4 {
             let ahead = h * fraction;
             let at = each(interval, |lane| start[lane].along(ahead, &last[lane]).s);
             let wrench = load.wrench(t + ahead, inertial, &at);
-            for lane in occupied(interval) {
+            for lane in interval.lanes() {
                 let wrench = wrench
                     .as_ref()
                     .map_or_else(Wrench::default, |w| w.get(lane));

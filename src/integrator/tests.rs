@@ -164,10 +164,9 @@ fn fixed_methods(
     load: &Load,
     bodies: &(InertialBlock, StateBlock),
 ) -> impl Iterator<Item = &'static dyn Method> {
-    let interval = interval(load, bodies.0, 1.0);
     METHODS.iter().copied().filter(move |method| {
         let info = method.info();
-        info.kind == Kind::Fixed && info.refuses(&interval).is_none()
+        info.kind == Kind::Fixed && info.refuses(load, &bodies.0).is_none()
     })
 }
 
@@ -177,7 +176,6 @@ fn methods_of_own_steps(
     load: &Load,
     bodies: &(InertialBlock, StateBlock),
 ) -> impl Iterator<Item = (&'static dyn Method, &'static [f64])> {
-    let interval = interval(load, bodies.0, 1.0);
     METHODS.iter().copied().filter_map(move |method| {
         let info = method.info();
         let tolerances: &[f64] = match info.kind {
@@ -185,7 +183,7 @@ fn methods_of_own_steps(
             Kind::Adaptive => &[1e-6, 1e-9, 1e-12, 1e-15],
             Kind::Closed => &[0.0],
         };
-        let takes = info.refuses(&interval).is_none();
+        let takes = info.refuses(load, &bodies.0).is_none();
         takes.then_some((method, tolerances))
     })
 }

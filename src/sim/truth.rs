@@ -95,7 +95,7 @@ impl Truth {
             (Known::Exact { mut body, mut now }, Some(method)) => {
                 move_to(&mut body, &mut now, t);
                 body.load(scene, active);
-                let takes = body.refusal(method, until).is_none();
+                let takes = body.refusal(method).is_none();
                 takes.then(|| {
                     body.set_out(&mut Exactly(method), t, until);
                     body

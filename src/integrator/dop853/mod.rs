@@ -63,7 +63,7 @@ impl Method for Dop853 {
         &INFO
     }
 
-    fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+    fn set_out(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
         let blocks = interval.clone();
         Box::new(Run::new(interval, state, |lane| {
             Body::new(&blocks, lane, t, &state.get(lane))

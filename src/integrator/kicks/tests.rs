@@ -4,7 +4,7 @@ use super::*;
 use crate::body::{InertialBlock, LANES};
 use crate::effect::{Depends, Effect, Load, Value};
 use crate::exact::FreeMotion;
-use crate::integrator::dmv::Preprocessed;
+use crate::integrator::preprocessed::Preprocessed;
 use crate::integrator::tests::{
     advance, angle, effect, free_triaxial, gyroscopic, heavy_top, heavy_top_at, interval, steps,
 };
@@ -181,9 +181,9 @@ fn a_torque_that_depends_on_velocity_is_refused() {
     let mut load = Load::default();
     load.push(Arc::new(Drag));
     for c in ALL {
-        let why = c.info.refuses(&interval(&load, bodies.0, 1.0)).unwrap().0;
+        let why = c.info.refuses(&load, &bodies.0).unwrap().0;
         assert!(why.contains("depends on velocity"), "{why}");
-        assert!(c.info.refuses(&interval(&weight, bodies.0, 1.0)).is_none());
+        assert!(c.info.refuses(&weight, &bodies.0).is_none());
     }
 }
 
@@ -286,12 +286,7 @@ fn a_load_that_was_refused_is_never_followed_in_silence() {
         (&crate::integrator::dmv::DMV4, &dragged),
     ];
     for (method, load) in refused {
-        assert!(
-            method
-                .info()
-                .refuses(&interval(load, bodies.0, 1.0))
-                .is_some()
-        );
+        assert!(method.info().refuses(load, &bodies.0).is_some());
         let end = advance(method, load, &bodies, 1.0, 4);
         assert!(!end.is_finite(), "{}", method.info().name);
     }

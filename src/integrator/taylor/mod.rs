@@ -27,7 +27,7 @@ mod travel;
 
 use super::coast::Passage;
 use super::flight::Flight;
-use super::own_steps::{Run, Walk, nowhere};
+use super::own_steps::{Run, Walk};
 use super::{Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Stepper, Work};
 use crate::body::{State, StateBlock};
 use four::{Four, larger};
@@ -65,15 +65,13 @@ impl Method for Taylor {
         &INFO
     }
 
-    fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
-        // Forces that are no terms are refused; nobody shall take the motion for one without them.
-        let terms = interval.load.terms(&interval.inertial);
-        let known = terms.is_some();
-        let terms = terms.unwrap_or_default();
+    fn set_out(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+        // Forces that are no terms were refused.
+        let terms = interval.load.terms(&interval.inertial).unwrap_or_default();
         let tolerance = interval.tolerance;
         let from = interval.clone();
         Box::new(Run::new(interval, state, |lane| {
-            let start = if known { state.get(lane) } else { nowhere() };
+            let start = state.get(lane);
             Body::new(Law::new(&from, &terms, lane, &start), tolerance, t, &start)
         }))
     }
