@@ -108,8 +108,9 @@ fn methods_page() -> String {
             info.preserves,
             if info.reversible { "yes" } else { "no" },
             match info.cost.evaluations {
-                0 => "varies".to_owned(),
-                n => n.to_string(),
+                None => "varies".to_owned(),
+                Some(0) => "none".to_owned(),
+                Some(n) => n.to_string(),
             },
             short(info.cost.weight)
         );
@@ -121,8 +122,11 @@ fn methods_page() -> String {
             [] => String::new(),
             names => format!(" Also called {}.", names.join(", ")),
         };
+        let weak = info.weak_orders.map_or_else(String::new, |[a, b, c]| {
+            format!(" Forces of the size ε make errors of ε h^{a} + ε² h^{b} + ε³ h^{c}.")
+        });
         text += &format!(
-            "- **{}**: damping {}.{called} {}.\n",
+            "- **{}**: damping {}.{called}{weak} {}.\n",
             info.name,
             info.damping.describe(),
             info.citation

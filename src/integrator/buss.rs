@@ -54,6 +54,7 @@ pub const BUSS: Buss = Buss {
         engines: &[],
         kind: Kind::Fixed,
         order: 2,
+        weak_orders: None,
         models: Models::Both,
         accepts: Accepts::Any,
         damping: Damping::Exact(
@@ -64,7 +65,7 @@ pub const BUSS: Buss = Buss {
         exact_free: false,
         preserves: "L of a free body, |q| by construction",
         cost: Cost {
-            evaluations: 2,
+            evaluations: Some(2),
             weight: 1.05,
         },
         citation: "Buss, Accurate and efficient simulation of rigid-body rotations, J. Comput. Phys. 164 (2000); torques at both ends: Heun; damping: Cox & Matthews 2002",
@@ -81,7 +82,7 @@ pub const BUSS3: Buss = Buss {
         accepts: Accepts::Free,
         damping: Damping::Exact("a free body at its slower time"),
         cost: Cost {
-            evaluations: 1,
+            evaluations: Some(1),
             weight: 1.25,
         },
         citation: "Buss, J. Comput. Phys. 164 (2000), with the term of Magnus' expansion that it leaves out: Hairer, Lubich & Wanner, Geometric Numerical Integration, IV.7",
@@ -143,7 +144,7 @@ impl Stepper for Run {
     fn work(&self) -> Work {
         Work {
             steps: self.steps,
-            evaluations: self.steps * u64::from(self.method.info.cost.evaluations),
+            evaluations: self.method.info.cost.evaluations_in(self.steps),
         }
     }
 

@@ -29,6 +29,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Closed,
     order: 0,
+    weak_orders: None,
     models: Models::Both,
     accepts: Accepts::Free,
     damping: Damping::Exact("by the time change s = (1 - e^{-ct})/c: exact"),
@@ -37,7 +38,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: true,
     preserves: "everything a free body keeps, to rounding, at any time",
     cost: Cost {
-        evaluations: 0,
+        evaluations: Some(0),
         weight: 2.3,
     },
     citation: "van Zon & Schofield, J. Comput. Phys. 225 (2007); Celledoni, Fassò, Säfström & Zanna, SIAM J. Sci. Comput. 30 (2008)",

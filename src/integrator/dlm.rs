@@ -33,6 +33,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Fixed,
     order: 2,
+    weak_orders: None,
     accepts: Accepts::Place,
     models: Models::Gyroscopic,
     damping: Damping::Exact("exact on L, order 2 in attitude"),
@@ -41,7 +42,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "angular momentum to rounding; symplectic: energy stays within bounds",
     cost: Cost {
-        evaluations: 1,
+        evaluations: Some(1),
         weight: 1.45,
     },
     citation: "Dullweber, Leimkuhler & McLachlan, J. Chem. Phys. 107 (1997) 5840",

@@ -5,8 +5,9 @@
 //! from step to step beside the state (a closed form's constants, a step size, a momentum), is its
 //! own. A plain one-step method is a [`OneStep`]: a function from state to state.
 //!
-//! A kernel is written for one body in nalgebra's terms and called for the eight lanes of a block
-//! in a loop that is compiled for the vector widths the processor has.
+//! A kernel is written for one body in nalgebra's terms. Of those that never branch on data the loop over
+//! the eight lanes of a block is compiled for the vector widths the processor has (`common`); the others,
+//! with sines and iterations, go lane by lane over the bodies there are (`scalar`, `kicks`, `own_steps`).
 
 mod buss;
 mod cf4;
@@ -182,7 +183,7 @@ pub const METHODS: &[&dyn Method] = &[
     &closed_form::ClosedForm,
 ];
 
-/// The method used where a scene names none: the most accurate of those that take every load.
+/// The method used where a scene names none: of fixed steps, the usual one; it takes every load.
 pub const DEFAULT_METHOD: &str = "rk4";
 
 /// The method of that name, or by which an engine's name is known.

@@ -68,7 +68,7 @@ impl<M: OneStep> Stepper for Run<M> {
     fn work(&self) -> Work {
         Work {
             steps: self.steps,
-            evaluations: self.steps * u64::from(self.method.info().cost.evaluations),
+            evaluations: self.method.info().cost.evaluations_in(self.steps),
         }
     }
 

@@ -35,6 +35,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &["mujoco-rk4"],
     kind: Kind::Fixed,
     order: 4,
+    weak_orders: None,
     models: Models::Both,
     accepts: Accepts::Any,
     damping: Damping::Engine("torques -c I ω and forces -k m v inside the stages: order 4"),
@@ -43,7 +44,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "|q| by construction; energy and momentum drift as h⁴",
     cost: Cost {
-        evaluations: 4,
+        evaluations: Some(4),
         weight: 7.9,
     },
     citation: "Munthe-Kaas, Appl. Numer. Math. 29 (1999); MuJoCo 4.0, mj_RungeKutta in engine_forward.c",

@@ -45,6 +45,7 @@ const fn info(name: &'static str, order: u32, weight: f64) -> MethodInfo {
         engines: &[],
         kind: Kind::Fixed,
         order,
+        weak_orders: None,
         accepts: Accepts::Free,
         models: Models::Gyroscopic,
         damping: Damping::Exact("exact: the undamped motion at a slower time"),
@@ -53,7 +54,7 @@ const fn info(name: &'static str, order: u32, weight: f64) -> MethodInfo {
         exact_free: false,
         preserves: "angular momentum and energy to rounding; only the phase drifts",
         cost: Cost {
-            evaluations: 1,
+            evaluations: Some(1),
             weight,
         },
         citation: "Moser & Veselov, Commun. Math. Phys. 139 (1991) 217; Hairer & Vilmart, J. Phys. A 39 (2006) 13225, section 4",

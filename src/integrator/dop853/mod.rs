@@ -43,6 +43,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Adaptive,
     order: 8,
+    weak_orders: None,
     models: Models::Both,
     accepts: Accepts::Any,
     damping: Damping::Exact("integrating factor: exact by itself, to the tolerance with torques"),
@@ -51,7 +52,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "a free body's momentum; all else to its tolerance",
     cost: Cost {
-        evaluations: 0,
+        evaluations: None,
         // A step of its own, tolerance 1e-12.
         weight: 8.8,
     },

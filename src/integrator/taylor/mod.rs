@@ -45,6 +45,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Adaptive,
     order: 20,
+    weak_orders: None,
     models: Models::Both,
     accepts: Accepts::Terms,
     damping: Damping::Within("a linear term of the recurrences: to the tolerance, as all else"),
@@ -53,7 +54,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "nothing exactly; everything to its tolerance",
     cost: Cost {
-        evaluations: 0,
+        evaluations: None,
         // A step of its own, tolerance 1e-12: order 15.
         weight: 3.9,
     },
