@@ -137,7 +137,7 @@ fn a_free_body_is_planned_in_closed_form() {
     let source = r#"
         duration = 1000.0
         [stepping]
-        accuracy = 1e-13
+        accuracy = 1e-11
         [record]
         rate = 1
         state = 1

@@ -6,7 +6,7 @@ use crate::by_hand::{intrinsics, one_after_another, without_load};
 use crate::measure::{Contestant, Timing, contestant, race};
 use crate::report::Report;
 use torquescope::body::{LANES, State};
-use torquescope::integrator::{Kind, METHODS, Method, Stepper, find};
+use torquescope::integrator::{Interval, Kind, METHODS, Method, Stepper, find};
 
 const UNIT: &str = "ns/body-step";
 const BODY_STEPS: usize = BLOCKS * LANES * STEPS;
@@ -51,8 +51,9 @@ pub fn methods(report: &mut Report, repeats: usize) {
     ] {
         let blocks = blocks(&bodies, acting);
         for method in fixed.clone() {
-            let refused = method.info().refuses(&blocks[0].interval).is_some();
-            if !refused && takes_steps(*method, &blocks[0]) {
+            let Interval { load, inertial, .. } = &blocks[0].interval;
+            let takes = method.info().refuses(load, inertial).is_none();
+            if takes && takes_steps(*method, &blocks[0]) {
                 names.push(format!("{}, {what}", method.info().name));
                 contestants.push(by_method(*method, &blocks));
             }

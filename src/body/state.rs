@@ -1,7 +1,9 @@
 //! The state of bodies: what a method advances.
 
 use super::lanes::{QuaternionLanes, Vector3Lanes};
-use nalgebra::{Quaternion, Vector3};
+use nalgebra::{Quaternion, Vector3, Vector4};
+
+const NO_VECTOR: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
 /// The state of one body.
 ///
@@ -21,6 +23,16 @@ pub struct State {
 }
 
 impl State {
+    /// Of a body that cannot be followed: no number, so that whoever asks can see it.
+    pub const NOWHERE: Self = Self {
+        x_w: NO_VECTOR,
+        v_w: NO_VECTOR,
+        q_wp: Quaternion {
+            coords: Vector4::new(f64::NAN, f64::NAN, f64::NAN, f64::NAN),
+        },
+        omega_w: NO_VECTOR,
+    };
+
     /// Takes a vector from principal axes to the world: `v + 2 u × (u × v + w v)`, q = (u, w) unit.
     #[inline(always)]
     pub fn to_world(&self, v_p: Vector3<f64>) -> Vector3<f64> {

@@ -109,8 +109,9 @@ fn methods_page() -> String {
             info.preserves.replace('|', "\\|"),
             if info.reversible { "yes" } else { "no" },
             match info.cost.evaluations {
-                0 => "varies".to_owned(),
-                n => n.to_string(),
+                None => "varies".to_owned(),
+                Some(0) => "none".to_owned(),
+                Some(n) => n.to_string(),
             },
             short(info.cost.weight)
         );
@@ -122,8 +123,11 @@ fn methods_page() -> String {
             names if names.is_empty() => String::new(),
             names => format!(" Also called {}.", names.join(", ")),
         };
+        let weak = info.weak_orders.map_or_else(String::new, |[a, b, c]| {
+            format!(" Forces of the size ε make errors of ε h^{a} + ε² h^{b} + ε³ h^{c}.")
+        });
         text += &format!(
-            "- **{}**: damping {}.{called} {}.\n",
+            "- **{}**: damping {}.{called}{weak} {}.\n",
             info.name,
             info.damping.describe(),
             info.citation

@@ -10,7 +10,7 @@
 //! same scene has the same plan on every machine.
 
 use super::check::{self, Checked, apart, largest, radius_of_gyration};
-use super::reference::{EXACT, Reference, by_truth, truest};
+use super::reference::{Reference, by_truth, exact_to, truest};
 use crate::body::{Inertial, State, StateBlock};
 use crate::integrator::{Interval, Kind, Method, Pieces, Step, Stepper};
 use crate::scene::{Scene, Stepping};
@@ -32,7 +32,7 @@ pub struct Planned {
     pub choice: Choice,
     /// Of the method's own step, s; none where it has none.
     pub step: Option<f64>,
-    /// Of this interval, rad, where it was measured.
+    /// Of this interval, rad, where it was measured: that of its first part, growing with time.
     pub expected: Option<f64>,
 }
 
@@ -68,7 +68,7 @@ pub enum PlanError {
 }
 
 /// Times the shares are made smaller before it is given up.
-const ATTEMPTS: usize = 6;
+const ATTEMPTS: usize = 10;
 
 impl Plan {
     /// Plans a scene that states an accuracy; measures one that states a method.
@@ -107,28 +107,44 @@ impl Plan {
             asked,
             had: rounded_up(had),
         };
-        if reference.uncertainty > asked {
+        if reference.uncertainty >= asked {
             return Err(beyond(reference.uncertainty));
         }
-        let mut best = f64::INFINITY;
         // Half for what is measured, half for how errors grow.
         let mut share = 0.5 * asked;
-        for _ in 0..ATTEMPTS {
+        let mut before: Option<Vec<Planned>> = None;
+        for attempt in 0..=ATTEMPTS {
+            let way = match attempt {
+                // What the reference itself was had by, which is known to do.
+                ATTEMPTS => Way::Truest,
+                _ => Way::Cheapest { share },
+            };
             let mut planner = Planner {
                 clock: scene.step,
                 duration: scene.duration,
-                way: Way::Cheapest { share },
+                way,
                 log: Vec::new(),
             };
-            let run = check::run(scene, &mut planner)?;
-            let achieved = run.apart(&reference.run);
-            if achieved <= asked {
+            let achieved = match check::run(scene, &mut planner) {
+                Ok(run) => run.apart(&reference.run),
+                Err(SimError::NotFinite { .. }) => f64::INFINITY,
+                Err(error) => return Err(error.into()),
+            };
+            if achieved + reference.uncertainty <= asked || attempt == ATTEMPTS {
                 return Ok(Self::new(planner.log, Some(asked), achieved, reference));
             }
-            best = best.min(achieved);
-            share *= (0.5 * asked / achieved).clamp(1e-6, 0.5);
+            // Errors grow by more than their time: allow the less for it. Where that changes nothing
+            // yet, a good deal less.
+            let same = before
+                .as_ref()
+                .is_some_and(|log| same_choices(log, &planner.log));
+            share *= match same {
+                true => 1e-3,
+                false => (0.5 * asked / achieved).clamp(1e-6, 0.5),
+            };
+            before = Some(planner.log);
         }
-        Err(beyond(best))
+        Err(beyond(reference.uncertainty))
     }
 
     fn new(
@@ -160,6 +176,16 @@ impl Plan {
     }
 }
 
+fn same_choices(a: &[Planned], b: &[Planned]) -> bool {
+    let same = |(a, b): (&Planned, &Planned)| {
+        let (a, b) = (&a.choice, &b.choice);
+        a.method.info().name == b.method.info().name
+            && a.pieces == b.pieces
+            && a.tolerance == b.tolerance
+    };
+    a.len() == b.len() && a.iter().zip(b).all(same)
+}
+
 /// Two digits, upwards.
 fn rounded_up(x: f64) -> f64 {
     let unit = libm::pow(10.0, libm::floor(libm::log10(x)) - 1.0);
@@ -182,6 +208,7 @@ impl Choose for Replay {
 
 enum Way {
     Stated(Choice),
+    Truest,
     Cheapest {
         /// Of the whole scene's error, rad.
         share: f64,
@@ -200,10 +227,14 @@ impl Choose for Planner {
     fn choose(&mut self, setting: &Setting<'_>) -> Choice {
         let (choice, expected) = match self.way {
             Way::Stated(choice) => (choice, None),
+            Way::Truest => (truest(setting.interval, 0), None),
             Way::Cheapest { share } => self.cheapest(setting, share),
         };
         let step = match choice.method.info().kind {
-            Kind::Fixed => Some(self.clock / f64::from(choice.pieces)),
+            Kind::Fixed => {
+                let whole = setting.interval.until - setting.from;
+                Some((self.clock / f64::from(choice.pieces)).min(whole))
+            }
             Kind::Adaptive | Kind::Closed => None,
         };
         self.log.push(Planned {
@@ -235,7 +266,7 @@ impl Planner {
         let interval = setting.interval;
         let best = truest(interval, 0);
         if best.method.info().kind == Kind::Closed {
-            return (best, Some(EXACT));
+            return (best, Some(exact_to(setting)));
         }
         let trial = Trial::new(setting, self.clock);
         let allowed = share * trial.length() / self.duration;

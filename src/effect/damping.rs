@@ -65,27 +65,62 @@ impl Decay {
         self.angular.factor(h)
     }
 
-    /// `T = (1 - e^{-k h}) / k`, s: the undamped time in which a body alone goes as far as damped
-    /// in `h` seconds.
-    pub fn linear_time(&self, h: f64) -> f64 {
-        self.linear.time(h)
+    /// `h` seconds, as the linear velocity counts them.
+    #[inline]
+    pub fn linear(&self, h: f64) -> Elapsed {
+        self.linear.over(h)
     }
 
-    /// `(h - T) / k`, s²: how far a constant acceleration of 1 moves a body from rest in `h` seconds.
-    pub fn linear_fall(&self, h: f64) -> f64 {
-        self.linear.fall(h)
+    /// `h` seconds, as the angular velocity counts them.
+    #[inline]
+    pub fn angular(&self, h: f64) -> Elapsed {
+        self.angular.over(h)
+    }
+}
+
+/// A stretch of time, of either sign, as a velocity that decays at the rate k counts it. (Of a free body
+/// `L = e^{-ct} L0` slows the same motion down: it turns in h seconds as far as undamped in [`Elapsed::time`].)
+#[derive(Clone, Copy, Debug)]
+pub struct Elapsed {
+    /// 1/s.
+    rate: f64,
+    /// s.
+    h: f64,
+    /// `e^{-k h}`: what is left of the velocity.
+    pub factor: f64,
+    /// `T = (1 - e^{-k h})/k`, s: how far a velocity that was 1 gets.
+    pub time: f64,
+}
+
+impl Elapsed {
+    /// Where nothing decays.
+    #[inline]
+    pub fn undamped(h: f64) -> Self {
+        Self {
+            rate: 0.0,
+            h,
+            factor: 1.0,
+            time: h,
+        }
     }
 
-    /// `(1 - e^{-c h}) / c`, s: the undamped time in which a body that no torque turns, turns as far
-    /// as damped in `h` seconds (`L = L0 e^{-ct}` slows the same motion down).
-    pub fn angular_time(&self, h: f64) -> f64 {
-        self.angular.time(h)
-    }
-
-    /// `(h - T) / c`, s², of that time: how far a constant angular acceleration of 1 turns a body
-    /// from rest in `h` seconds.
-    pub fn angular_fall(&self, h: f64) -> f64 {
-        self.angular.fall(h)
+    /// `(h - T)/k`, s²: how far a constant acceleration of 1 gets from rest.
+    #[inline]
+    pub fn fall(&self) -> f64 {
+        let (k, h) = (self.rate, self.h);
+        if k == 0.0 {
+            return 0.5 * h * h;
+        }
+        let z = k * h;
+        if z.abs() > 1.0 {
+            // A difference that loses a bit and a half at most.
+            return (h - self.time) / k;
+        }
+        // h² (1/2! - z/3! + z²/4! - ...), where it would lose more; the last term is below 1/20!.
+        let sum = (3..=20_u32)
+            .rev()
+            .fold(1.0, |sum, n| 1.0 - sum * z / f64::from(n));
+        0.5 * h * h * sum
     }
 }
 
@@ -134,23 +169,16 @@ impl Rate {
         }
     }
 
-    fn time(&self, h: f64) -> f64 {
-        match self.rate {
-            0.0 => h,
-            rate => -libm::expm1(-rate * h) / rate,
+    fn over(&self, h: f64) -> Elapsed {
+        if self.rate == 0.0 {
+            return Elapsed::undamped(h);
         }
-    }
-
-    fn fall(&self, h: f64) -> f64 {
-        let z = self.rate * h;
-        if z.abs() > 0.5 {
-            return (h - self.time(h)) / self.rate;
+        Elapsed {
+            rate: self.rate,
+            h,
+            factor: self.factor(h),
+            time: -libm::expm1(-self.rate * h) / self.rate,
         }
-        // h² Σ (-z)^j / (j + 2)!, where the difference would cancel: the 15th term is 0.5¹⁵/17! of h².
-        let sum = (0..15_u32)
-            .rev()
-            .fold(0.0, |sum, j| (1.0 - z * sum) / f64::from(j + 2));
-        h * h * sum
     }
 }
 
@@ -159,26 +187,46 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_and_falls_are_those_of_the_closed_form_at_any_rate() {
-        // T and (h - T)/k in 40 digits (mpmath), h = 0.75; z = k h on both sides of the series' end.
+    fn times_and_falls_are_those_of_the_closed_form_at_any_rate_forth_and_back() {
+        // T and (h - T)/k in 40 digits (mpmath); z = k h on both sides of the series' ends.
         let cases = [
-            (0.0, 0.75, 0.28125),
-            (1e-9, 0.749_999_999_718_75, 0.281_249_999_929_687_5),
-            (0.6, 0.603_953_080_630_377_9, 0.243_411_532_282_703_6),
-            (0.7, 0.583_492_336_618_835_6, 0.237_868_090_544_520_58),
-            (40.0, 0.024_999_999_999_997_66, 0.018_125_000_000_000_058),
+            (0.0, 0.75, 0.75, 0.28125),
+            (1e-9, 0.75, 0.749_999_999_718_75, 0.281_249_999_929_687_5),
+            (0.6, 0.75, 0.603_953_080_630_377_8, 0.243_411_532_282_703_6),
+            (1.3, 0.75, 0.479_082_804_951_417_8, 0.208_397_842_345_063_3),
+            (1.35, 0.75, 0.471_622_541_215_547_2, 0.206_205_525_025_520_6),
+            (
+                40.0,
+                0.75,
+                0.024_999_999_999_997_66,
+                0.018_125_000_000_000_058,
+            ),
+            (0.6, -0.75, -0.947_186_975_816_948, 0.328_644_959_694_913_37),
+            (
+                1.3,
+                -0.75,
+                -1.270_128_623_832_774_4,
+                0.400_098_941_409_826_44,
+            ),
+            (
+                1.35,
+                -0.75,
+                -1.298_128_596_083_040_3,
+                0.406_021_182_283_733_5,
+            ),
+            (9.0, -0.75, -94.784_306_947_350_17, 10.448_256_327_483_353),
         ];
-        for (k, time, fall) in cases {
+        for (k, h, time, fall) in cases {
             let rate = Rate::new("linear", Some(k), None, 1.0).unwrap();
             let decay = Decay {
                 linear: rate,
                 angular: rate,
             };
-            // A few roundings.
-            assert!((decay.linear_time(0.75) / time - 1.0).abs() < 1e-15, "{k}");
-            assert!((decay.angular_time(0.75) / time - 1.0).abs() < 1e-15, "{k}");
-            assert!((decay.linear_fall(0.75) / fall - 1.0).abs() < 1e-15, "{k}");
-            assert!((decay.angular_fall(0.75) / fall - 1.0).abs() < 1e-15, "{k}");
+            // k h, an exponential, a quotient; and where the difference is taken, its bit and a half.
+            for over in [decay.linear(h), decay.angular(h)] {
+                assert!((over.time / time - 1.0).abs() < 6e-16, "{k} {h}");
+                assert!((over.fall() / fall - 1.0).abs() < 1e-15, "{k} {h}");
+            }
         }
     }
 }

@@ -12,7 +12,7 @@ mod push;
 mod term;
 
 pub use couple::Couple;
-pub use damping::Decay;
+pub use damping::{Decay, Elapsed};
 pub use load::{Frame, Load, Wrench, WrenchBlock};
 pub use push::Push;
 pub use term::{Depends, Term};

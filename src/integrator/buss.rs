@@ -30,11 +30,12 @@
 //! Buss, J. Comput. Phys. 164 (2000) 377-406; Magnus: Hairer, Lubich & Wanner, Geometric Numerical
 //! Integration, IV.7; Cox & Matthews, J. Comput. Phys. 176 (2002) 430-455.
 
+use super::coast::Passage;
 use super::{
     Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Step, Stepper, Work, scalar,
 };
 use crate::body::{Inertial, LANES, State, StateBlock};
-use crate::effect::{Load, WrenchBlock};
+use crate::effect::WrenchBlock;
 use nalgebra::Vector3;
 
 /// The method with or without the term in ω''.
@@ -53,6 +54,7 @@ pub const BUSS: Buss = Buss {
         engines: &[],
         kind: Kind::Fixed,
         order: 2,
+        weak_orders: None,
         models: Models::Both,
         accepts: Accepts::Any,
         damping: Damping::Exact(
@@ -63,7 +65,7 @@ pub const BUSS: Buss = Buss {
         exact_free: false,
         preserves: "L of a free body, |q| by construction",
         cost: Cost {
-            evaluations: 2,
+            evaluations: Some(2),
             weight: 1.05,
         },
         citation: "Buss, Accurate and efficient simulation of rigid-body rotations, J. Comput. Phys. 164 (2000); torques at both ends: Heun; damping: Cox & Matthews 2002",
@@ -80,7 +82,7 @@ pub const BUSS3: Buss = Buss {
         accepts: Accepts::Free,
         damping: Damping::Exact("a free body at its slower time"),
         cost: Cost {
-            evaluations: 1,
+            evaluations: Some(1),
             weight: 1.25,
         },
         citation: "Buss, J. Comput. Phys. 164 (2000), with the term of Magnus' expansion that it leaves out: Hairer, Lubich & Wanner, Geometric Numerical Integration, IV.7",
@@ -95,9 +97,9 @@ impl Method for Buss {
         self.info
     }
 
-    fn start(&self, interval: Interval, _t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+    fn set_out(&self, interval: Interval, _t: f64, state: &StateBlock) -> Box<dyn Stepper> {
         let mut spin_w = [Vector3::zeros(); LANES];
-        for lane in scalar::occupied(&interval) {
+        for lane in interval.lanes() {
             let s = state.get(lane);
             spin_w[lane] = match interval.load.gyroscopic() {
                 true => interval.inertial.get(lane).momentum_w(&s),
@@ -142,7 +144,7 @@ impl Stepper for Run {
     fn work(&self) -> Work {
         Work {
             steps: self.steps,
-            evaluations: self.steps * u64::from(self.method.info.cost.evaluations),
+            evaluations: self.method.info.cost.evaluations_in(self.steps),
         }
     }
 
@@ -160,17 +162,19 @@ struct Kick {
 
 impl Run {
     fn step(&mut self, t: f64, h: f64) {
-        let (linear, angular) = Over::both(&self.interval.load, h);
+        let Passage { linear, angular } = Passage::of(h, self.interval.load.decay());
         let start = self.state;
         let before = self.kicks(t, &start);
-        for lane in scalar::occupied(&self.interval) {
+        let falls = before.map(|_| (linear.fall(), angular.fall()));
+        let (linear_fall, angular_fall) = falls.unwrap_or_default();
+        for lane in self.interval.lanes() {
             let (body, s) = (self.interval.inertial.get(lane), start.get(lane));
             let kick = before.map(|kicks| kicks[lane]);
-            let turn = self.turn(angular, lane, &body, &s, kick);
+            let turn = self.turn(angular.time, angular_fall, lane, &body, &s, kick);
             let (a_w, spin_rate_w) = kick.map_or_else(Default::default, |p| (p.a_w, p.spin_rate_w));
             self.spin_w[lane] = self.spin_w[lane] * angular.factor + spin_rate_w * angular.time;
             let moved = State {
-                x_w: s.x_w + s.v_w * linear.time + a_w * linear.fall,
+                x_w: s.x_w + s.v_w * linear.time + a_w * linear_fall,
                 v_w: s.v_w * linear.factor + a_w * linear.time,
                 ..scalar::kept_unit(scalar::turned(turn, s))
             };
@@ -180,11 +184,11 @@ impl Run {
         let Some(after) = self.kicks(t + h, &self.state) else {
             return;
         };
-        for lane in scalar::occupied(&self.interval) {
+        for lane in self.interval.lanes() {
             let (body, s) = (self.interval.inertial.get(lane), self.state.get(lane));
             let (one, two) = (before[lane], after[lane]);
-            self.spin_w[lane] += (two.spin_rate_w - one.spin_rate_w) * (angular.fall / h);
-            let v_w = s.v_w + (two.a_w - one.a_w) * (linear.fall / h);
+            self.spin_w[lane] += (two.spin_rate_w - one.spin_rate_w) * (angular_fall / h);
+            let v_w = s.v_w + (two.a_w - one.a_w) * (linear_fall / h);
             self.set(lane, &body, State { v_w, ..s });
         }
     }
@@ -199,17 +203,18 @@ impl Run {
         self.state.set(lane, State { omega_w, ..s });
     }
 
-    /// `h ω̄`, rad.
+    /// `h ω̄`, rad; h as free motion counts it, and how far a constant rate of ω gets, s².
     fn turn(
         &self,
-        over: Over,
+        h: f64,
+        fall: f64,
         lane: usize,
         body: &Inertial,
         s: &State,
         kick: Option<Kick>,
     ) -> Vector3<f64> {
         let gyroscopic = self.interval.load.gyroscopic();
-        let (omega, h) = (s.omega_w, over.time);
+        let omega = s.omega_w;
         // I_w⁻¹ τ.
         let alpha = match (kick, gyroscopic) {
             (None, _) => Vector3::zeros(),
@@ -225,7 +230,7 @@ impl Run {
             true => curvature(body, s, self.spin_w[lane], free) * self.method.curvature,
             false => Vector3::zeros(),
         };
-        (omega + free * (0.5 * h) + (commutator + curvature) * (h * h)) * h + alpha * over.fall
+        (omega + free * (0.5 * h) + (commutator + curvature) * (h * h)) * h + alpha * fall
     }
 
     fn kicks(&self, t: f64, at: &StateBlock) -> Option<[Kick; LANES]> {
@@ -256,45 +261,6 @@ fn curvature(
     let net = -omega.cross(&momentum_w);
     let inside = omega_rate.cross(&momentum_w) + omega.cross(&net);
     omega.cross(&omega_rate) - body.angular_response(s, inside)
-}
-
-/// What a decaying velocity does in a step.
-#[derive(Clone, Copy)]
-struct Over {
-    /// What is left of it: `e^{-ch}`.
-    factor: f64,
-    /// How far one of 1 gets, s: `(1 - e^{-ch})/c`.
-    time: f64,
-    /// How far a constant rate of it gets, s²: `(h - time)/c`.
-    fall: f64,
-}
-
-impl Over {
-    /// Of v and of ω.
-    fn both(load: &Load, h: f64) -> (Self, Self) {
-        match load.decay() {
-            None => {
-                let undamped = Self {
-                    factor: 1.0,
-                    time: h,
-                    fall: 0.5 * h * h,
-                };
-                (undamped, undamped)
-            }
-            Some(decay) => (
-                Self {
-                    factor: decay.linear_factor(h),
-                    time: decay.linear_time(h),
-                    fall: decay.linear_fall(h),
-                },
-                Self {
-                    factor: decay.angular_factor(h),
-                    time: decay.angular_time(h),
-                    fall: decay.angular_fall(h),
-                },
-            ),
-        }
-    }
 }
 
 #[cfg(test)]

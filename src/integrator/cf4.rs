@@ -17,7 +17,7 @@
 //!
 //! Celledoni, Marthinsen & Owren, Future Generation Computer Systems 19 (2003), 341-352.
 
-use super::common::{HalfDecay, Rate, RateBlock, along, decayed};
+use super::common::{DecayFactors, Rate, RateBlock, along, decayed};
 use super::one_step::OneStep;
 use super::scalar::{each, kept_unit, rates, turned};
 use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
@@ -32,6 +32,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Fixed,
     order: 4,
+    weak_orders: None,
     models: Models::Both,
     accepts: Accepts::Any,
     damping: Damping::Exact("integrating factor: exact by itself, order 4 with torques"),
@@ -40,7 +41,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "|q| by construction; rotation at constant ω exactly",
     cost: Cost {
-        evaluations: 4,
+        evaluations: Some(4),
         weight: 6.0,
     },
     citation: "Celledoni, Marthinsen & Owren, Commutator-free Lie group methods, FGCS 19 (2003), order 4 on the classical method; damping: Lawson 1967",
@@ -53,7 +54,7 @@ impl OneStep for Cf4 {
 
     fn step(&self, t: f64, h: f64, interval: &Interval, state: &mut StateBlock) {
         let half = 0.5 * h;
-        let decay = HalfDecay::of(&interval.load, half);
+        let decay = DecayFactors::of(&interval.load, half);
         // E on the velocities, where they decay.
         let e = |y: State| decay.map_or(y, |e| decayed(y, e.linear, e.angular));
         let y1 = *state;

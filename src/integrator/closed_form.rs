@@ -6,7 +6,7 @@
 //! ```
 //!
 //! c and k damp the angular and the linear velocity; without them s = r = t and (t - r)/k = t²/2. The free
-//! body is [`FreeMotion`], in Euler's equations the elliptic one; in the tutorial's model, where ω stays,
+//! body is [`Coast`], in Euler's equations the elliptic one; in the tutorial's model, where ω stays,
 //! the rotation `exp(ω s/2) q0`, whose angle is reduced in double-double.
 //!
 //! Nothing is stepped: errors do not grow with the number of steps, and only instants that are asked for
@@ -15,15 +15,12 @@
 //! Damping: τ = -c I ω makes dL/dt = -c L; with L = e^{-ct} M and ds = e^{-ct} dt, M and q obey the undamped
 //! equations in s.
 
-use super::flight::{Elapsed, Flight};
-use super::own_steps::nowhere;
+use super::coast::{Coast, Passage, constant_accelerations};
 use super::{
     Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Step, Stepper, Work,
 };
-use crate::body::{Inertial, State, StateBlock};
+use crate::body::StateBlock;
 use crate::effect::Decay;
-use crate::exact::FreeMotion;
-use nalgebra::{Quaternion, Vector3};
 
 pub struct ClosedForm;
 
@@ -32,6 +29,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Closed,
     order: 0,
+    weak_orders: None,
     models: Models::Both,
     accepts: Accepts::Free,
     damping: Damping::Exact("by the time change s = (1 - e^{-ct})/c: exact"),
@@ -40,7 +38,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: true,
     preserves: "everything a free body keeps, to rounding, at any time",
     cost: Cost {
-        evaluations: 0,
+        evaluations: Some(0),
         weight: 2.3,
     },
     citation: "van Zon & Schofield, J. Comput. Phys. 225 (2007); Celledoni, Fassò, Säfström & Zanna, SIAM J. Sci. Comput. 30 (2008)",
@@ -51,24 +49,15 @@ impl Method for ClosedForm {
         &INFO
     }
 
-    fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
-        // What is refused has no closed form here; nobody shall take the free motion for it.
-        let refused = INFO.refuses(&interval).is_some();
-        let wrench = interval.load.wrench(t, &interval.inertial, state);
-        let path = |lane: usize| {
-            let body = interval.inertial.get(lane);
-            let force_w = wrench.as_ref().map(|w| w.get(lane).force_w);
-            let a_w = force_w.unwrap_or_default() * body.inv_mass;
-            let turning = Turning::new(interval.load.gyroscopic(), &body, &state.get(lane));
-            Path {
-                start: state.get(lane),
-                flight: Flight::new(&state.get(lane), a_w),
-                turning,
-            }
+    fn set_out(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+        let gyroscopic = interval.load.gyroscopic();
+        let accelerations = constant_accelerations(&interval, t, state);
+        let coast = |lane: usize| {
+            let inertial = interval.inertial.get(lane);
+            Coast::new(inertial, gyroscopic, &state.get(lane), accelerations[lane])
         };
         Box::new(Run {
-            paths: (0..interval.bodies).map(path).collect(),
-            refused,
+            bodies: interval.lanes().map(coast).collect(),
             decay: interval.load.decay().copied(),
             empty: *state,
             from: t,
@@ -80,8 +69,7 @@ impl Method for ClosedForm {
 
 #[derive(Clone)]
 struct Run {
-    paths: Vec<Path>,
-    refused: bool,
+    bodies: Vec<Coast>,
     decay: Option<Decay>,
     /// What the lanes without a body hold.
     empty: StateBlock,
@@ -89,23 +77,6 @@ struct Run {
     from: f64,
     now: f64,
     instants: u64,
-}
-
-/// How one body moves.
-#[derive(Clone)]
-struct Path {
-    start: State,
-    flight: Flight,
-    turning: Turning,
-}
-
-/// How it turns, undamped.
-#[derive(Clone)]
-enum Turning {
-    /// L stays.
-    Euler(FreeMotion),
-    /// ω stays: what the world turns the starting attitude by.
-    Steady(FreeMotion),
 }
 
 impl Stepper for Run {
@@ -120,16 +91,10 @@ impl Stepper for Run {
     }
 
     fn state(&self) -> StateBlock {
-        let t = self.now - self.from;
-        let linear = Elapsed::linear(self.decay.as_ref(), t);
-        let angular = Elapsed::angular(self.decay.as_ref(), t);
+        let gone = Passage::of(self.now - self.from, self.decay.as_ref());
         let mut block = self.empty;
-        for (lane, path) in self.paths.iter().enumerate() {
-            let state = match self.refused {
-                true => nowhere(),
-                false => path.at(linear, angular),
-            };
-            block.set(lane, state);
+        for (lane, body) in self.bodies.iter().enumerate() {
+            block.set(lane, body.at(&gone));
         }
         block
     }
@@ -146,45 +111,11 @@ impl Stepper for Run {
     }
 }
 
-impl Path {
-    fn at(&self, linear: Elapsed, angular: Elapsed) -> State {
-        let (x_w, v_w) = self.flight.at(linear);
-        let (q_wp, omega_w) = self.turning.at(angular.first, &self.start);
-        State {
-            x_w,
-            v_w,
-            q_wp,
-            omega_w: omega_w * angular.factor,
-        }
-    }
-}
-
-impl Turning {
-    fn new(gyroscopic: bool, body: &Inertial, start: &State) -> Self {
-        if gyroscopic {
-            let omega_p = start.to_principal(start.omega_w);
-            return Self::Euler(FreeMotion::new(body.moments, start.q_wp, omega_p));
-        }
-        // A body with equal moments turns steadily.
-        let (sphere, upright) = (Vector3::repeat(1.0), Quaternion::identity());
-        Self::Steady(FreeMotion::new(sphere, upright, start.omega_w))
-    }
-
-    /// Attitude and world angular velocity.
-    fn at(&self, s: f64, start: &State) -> (Quaternion<f64>, Vector3<f64>) {
-        match self {
-            Self::Euler(motion) => {
-                let (q_wp, omega_p) = motion.at(s);
-                (q_wp, State { q_wp, ..*start }.to_world(omega_p))
-            }
-            Self::Steady(turn) => (turn.attitude(s) * start.q_wp, start.omega_w),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::State;
+    use nalgebra::{Quaternion, Vector3};
 
     #[test]
     fn in_the_tutorials_model_a_long_rotation_keeps_its_phase() {
@@ -198,12 +129,8 @@ mod tests {
             omega_w: Vector3::new(0.0, omega, 0.0),
         };
         let body = crate::body::InertialBlock::default().get(0);
-        let path = Path {
-            start,
-            flight: Flight::new(&start, Vector3::zeros()),
-            turning: Turning::new(false, &body, &start),
-        };
-        let end = path.at(Elapsed::linear(None, t), Elapsed::angular(None, t));
+        let coast = Coast::new(body, false, &start, Vector3::zeros());
+        let end = coast.at(&Passage::of(t, None));
         let (sin, cos) = libm::sincos(0.5 * omega * t);
         let exact = Quaternion::new(cos, 0.0, sin, 0.0) * q0;
         // Sine, cosine and a product, each rounded.

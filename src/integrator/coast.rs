@@ -7,9 +7,10 @@
 //!
 //! Undamped T = s = t and P = t²/2. Nothing accumulates: errors do not grow with the number of steps.
 
-use super::flight::{Elapsed, Flight};
-use crate::body::{Inertial, InertialBlock, LANES, State};
-use crate::effect::{Decay, Depends, Frame, Load, Term};
+use super::Interval;
+use super::flight::Flight;
+use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
+use crate::effect::{Decay, Depends, Elapsed, Frame, Load, Term};
 use crate::exact::FreeMotion;
 use crate::math::turned;
 use nalgebra::{Quaternion, Vector3};
@@ -42,51 +43,107 @@ pub fn coasting(load: &Load, inertial: &InertialBlock) -> [Option<Vector3<f64>>;
     accelerations
 }
 
-/// A body on its way.
-#[derive(Clone, Debug)]
-pub struct Coast {
-    body: Inertial,
-    gyroscopic: bool,
-    start: State,
-    momentum_w: Vector3<f64>,
-    /// m/s².
-    a_w: Vector3<f64>,
-    turning: FreeMotion,
+/// The accelerations (m/s²) of the bodies of a block on which nothing acts but forces that are constant.
+pub fn constant_accelerations(
+    interval: &Interval,
+    t: f64,
+    state: &StateBlock,
+) -> [Vector3<f64>; LANES] {
+    let wrench = interval.load.wrench(t, &interval.inertial, state);
+    let wrench = wrench.unwrap_or_default();
+    std::array::from_fn(|lane| wrench.get(lane).force_w * interval.inertial.get(lane).inv_mass)
 }
 
-impl Coast {
-    pub fn new(body: Inertial, gyroscopic: bool, start: State, a_w: Vector3<f64>) -> Self {
-        // Constant ω is how a sphere turns, whatever its size.
-        let moments = match gyroscopic {
-            true => body.moments,
-            false => Vector3::repeat(1.0),
-        };
-        let omega_p = start.to_principal(start.omega_w);
+/// How a body goes that no torque turns and a constant force pushes, but for its attitude.
+#[derive(Clone, Debug)]
+pub struct Course {
+    inertial: Inertial,
+    flight: Flight,
+    /// At the start, kg m²/s.
+    momentum_w: Vector3<f64>,
+}
+
+impl Course {
+    /// From a start, under a constant acceleration, m/s².
+    pub fn new(inertial: Inertial, start: &State, a_w: Vector3<f64>) -> Self {
         Self {
-            gyroscopic,
-            momentum_w: body.momentum_w(&start),
-            start,
-            a_w,
-            turning: FreeMotion::new(moments, start.q_wp, omega_p),
-            body,
+            flight: Flight::new(start, a_w),
+            momentum_w: inertial.momentum_w(start),
+            inertial,
         }
     }
 
-    /// `t` seconds after it set out.
-    pub fn at(&self, t: f64, decay: Option<&Decay>) -> State {
-        let gone = Passage::of(t, decay);
-        let (x_w, v_w) = gone.translated(&self.start, self.a_w);
-        let left = gone.angular_left();
-        let q_wp = self.turning.attitude(gone.turning());
-        let omega_w = match self.gyroscopic {
-            true => omega_w(&self.body, q_wp, self.momentum_w * left),
-            false => self.start.omega_w * left,
-        };
+    /// L (world, kg m²/s) when `left` of it, `e^{-ct}`, is left.
+    pub fn momentum_w(&self, left: f64) -> Vector3<f64> {
+        self.momentum_w * left
+    }
+
+    /// Where it is by now with that attitude, `ω = R I⁻¹ Rᵀ L`.
+    pub fn at(&self, gone: &Passage, q_wp: Quaternion<f64>) -> State {
+        let (x_w, v_w) = self.flight.at(&gone.linear);
         State {
             x_w,
             v_w,
             q_wp,
-            omega_w,
+            omega_w: omega_w(&self.inertial, q_wp, self.momentum_w(gone.angular.factor)),
+        }
+    }
+}
+
+/// A body on its way, at any time at once.
+#[derive(Clone, Debug)]
+pub struct Coast {
+    course: Course,
+    turning: Turning,
+}
+
+/// How it turns, undamped.
+#[derive(Clone, Debug)]
+enum Turning {
+    /// L stays.
+    Euler(FreeMotion),
+    /// ω stays: what the world turns the starting attitude by.
+    Steady {
+        turn: FreeMotion,
+        q_wp: Quaternion<f64>,
+        omega_w: Vector3<f64>,
+    },
+}
+
+impl Coast {
+    pub fn new(inertial: Inertial, gyroscopic: bool, start: &State, a_w: Vector3<f64>) -> Self {
+        let State { q_wp, omega_w, .. } = *start;
+        let turning = if gyroscopic {
+            let omega_p = start.to_principal(omega_w);
+            Turning::Euler(FreeMotion::new(inertial.moments, q_wp, omega_p))
+        } else {
+            // A body with equal moments turns steadily.
+            let (sphere, upright) = (Vector3::repeat(1.0), Quaternion::identity());
+            Turning::Steady {
+                turn: FreeMotion::new(sphere, upright, omega_w),
+                q_wp,
+                omega_w,
+            }
+        };
+        Self {
+            course: Course::new(inertial, start, a_w),
+            turning,
+        }
+    }
+
+    /// The state by now.
+    pub fn at(&self, gone: &Passage) -> State {
+        let s = gone.angular.time;
+        match &self.turning {
+            Turning::Euler(motion) => self.course.at(gone, motion.attitude(s)),
+            Turning::Steady {
+                turn,
+                q_wp,
+                omega_w,
+            } => State {
+                omega_w: omega_w * gone.angular.factor,
+                ..self.course.at(gone, turn.attitude(s) * q_wp)
+            },
         }
     }
 }
@@ -94,33 +151,28 @@ impl Coast {
 /// A stretch of time as either velocity counts it.
 #[derive(Clone, Copy, Debug)]
 pub struct Passage {
-    linear: Elapsed,
-    angular: Elapsed,
+    pub linear: Elapsed,
+    pub angular: Elapsed,
 }
 
 impl Passage {
     #[inline]
     pub fn of(h: f64, decay: Option<&Decay>) -> Self {
+        let undamped = Elapsed::undamped(h);
         Self {
-            linear: Elapsed::linear(decay, h),
-            angular: Elapsed::angular(decay, h),
+            linear: decay.map_or(undamped, |decay| decay.linear(h)),
+            angular: decay.map_or(undamped, |decay| decay.angular(h)),
         }
     }
 
-    /// `(1 - e^{-ch})/c`, s: the undamped time in which a free body turns as far.
-    pub fn turning(&self) -> f64 {
-        self.angular.first
-    }
-
-    /// `e^{-ch}`: what is left of L.
-    pub fn angular_left(&self) -> f64 {
-        self.angular.factor
-    }
-
-    /// Place and velocity after it under a constant acceleration.
-    #[inline]
-    pub fn translated(&self, s: &State, a_w: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
-        Flight::new(s, a_w).at(self.linear)
+    /// The state after it where no force acts, but for what turns.
+    #[inline(always)]
+    pub fn translated(&self, s: State) -> State {
+        State {
+            x_w: s.x_w + s.v_w * self.linear.time,
+            v_w: s.v_w * self.linear.factor,
+            ..s
+        }
     }
 }
 

@@ -131,23 +131,23 @@ pub fn decayed(y: State, linear: f64, angular: f64) -> State {
     }
 }
 
-/// Factors over half a step on v and ω, for methods with an integrating factor.
+/// Factors on v and ω over some time, for methods with an integrating factor.
 #[derive(Clone, Copy)]
-pub struct HalfDecay {
+pub struct DecayFactors {
     pub linear: f64,
     pub angular: f64,
 }
 
-impl HalfDecay {
-    /// `None` where nothing decays.
-    pub fn of(load: &Load, half: f64) -> Option<Self> {
+impl DecayFactors {
+    /// Over `h` seconds; `None` where nothing decays.
+    pub fn of(load: &Load, h: f64) -> Option<Self> {
         load.decay().map(|decay| Self {
-            linear: decay.linear_factor(half),
-            angular: decay.angular_factor(half),
+            linear: decay.linear_factor(h),
+            angular: decay.angular_factor(h),
         })
     }
 
-    /// Over so many half steps: none, one or two.
+    /// Over that time so many times: none, one or two.
     pub fn times(self, times: u8) -> Self {
         let power = |factor: f64| match times {
             0 => 1.0,

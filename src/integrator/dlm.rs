@@ -16,7 +16,6 @@
 //! Numerical Integration, VII.5.
 
 use super::coast::{Passage, omega_w};
-use super::own_steps::nowhere;
 use super::{
     Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Step, Stepper, Work,
 };
@@ -34,6 +33,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Fixed,
     order: 2,
+    weak_orders: None,
     accepts: Accepts::Place,
     models: Models::Gyroscopic,
     damping: Damping::Exact("exact on L, order 2 in attitude"),
@@ -42,7 +42,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "angular momentum to rounding; symplectic: energy stays within bounds",
     cost: Cost {
-        evaluations: 1,
+        evaluations: Some(1),
         weight: 1.45,
     },
     citation: "Dullweber, Leimkuhler & McLachlan, J. Chem. Phys. 107 (1997) 5840",
@@ -53,20 +53,17 @@ impl Method for Dlm {
         &INFO
     }
 
-    fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
-        // A body for which it has no motion shall not be taken for one.
-        let refused = INFO.refuses(&interval).is_some();
-        let (mut momentum_w, mut block) = (Vector3Lanes::default(), *state);
-        for lane in 0..interval.bodies.min(LANES) {
-            let start = if refused { nowhere() } else { state.get(lane) };
-            block.set(lane, start);
-            momentum_w.set(lane, interval.inertial.get(lane).momentum_w(&start));
+    fn set_out(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+        let mut momentum_w = Vector3Lanes::default();
+        for lane in interval.lanes() {
+            let body = interval.inertial.get(lane);
+            momentum_w.set(lane, body.momentum_w(&state.get(lane)));
         }
         Box::new(Run {
             asked: interval.load.wrench(t, &interval.inertial, state),
             interval: interval.into(),
             momentum_w,
-            block,
+            block: *state,
             steps: 0,
         })
     }
@@ -131,11 +128,11 @@ fn drift(
 ) {
     for lane in 0..LANES {
         let (mut state, l) = (block.get(lane), momentum_w.get(lane));
-        let rates = inertial.get(lane).inv_moments * by.turning();
-        (state.x_w, state.v_w) = by.translated(&state, Vector3::zeros());
+        let rates = inertial.get(lane).inv_moments * by.angular.time;
+        state = by.translated(state);
         state.q_wp = five_turns(rates, state.q_wp, l);
         block.set(lane, state);
-        momentum_w.set(lane, l * by.angular_left());
+        momentum_w.set(lane, l * by.angular.factor);
     }
 }
 
@@ -185,7 +182,7 @@ impl Stepper for Run {
 
     fn state(&self) -> StateBlock {
         let mut states = self.block;
-        for lane in 0..self.interval.bodies.min(LANES) {
+        for lane in self.interval.lanes() {
             let mut state = states.get(lane);
             let body = self.interval.inertial.get(lane);
             state.omega_w = omega_w(&body, state.q_wp, self.momentum_w.get(lane));
@@ -210,9 +207,7 @@ impl Stepper for Run {
 mod tests {
     use super::*;
     use crate::effect::Load;
-    use crate::integrator::tests::{
-        advance, angle, free_triaxial, gyroscopic, heavy_top, interval,
-    };
+    use crate::integrator::tests::{advance, angle, free_triaxial, gyroscopic, heavy_top};
 
     #[test]
     fn turns_are_as_good_as_exact_ones() {
@@ -249,7 +244,7 @@ mod tests {
     #[test]
     fn the_tutorials_model_is_refused_with_the_reason() {
         let (bodies, _) = free_triaxial();
-        let why = INFO.refuses(&interval(&Load::default(), bodies.0, 1.0));
+        let why = INFO.refuses(&Load::default(), &bodies.0);
         assert!(why.unwrap().0.contains("gyroscopic = true"));
     }
 }

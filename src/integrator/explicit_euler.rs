@@ -22,6 +22,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Fixed,
     order: 1,
+    weak_orders: None,
     accepts: Accepts::Any,
     models: Models::Both,
     damping: Damping::Exact("after the step, exact factor"),
@@ -30,7 +31,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "nothing; an oscillation's energy grows by 1 + (hΩ)² a step (kept to show it)",
     cost: Cost {
-        evaluations: 1,
+        evaluations: Some(1),
         weight: 0.3,
     },
     citation: "Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, I.7",

@@ -39,6 +39,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &["bullet"],
     kind: Kind::Fixed,
     order: 1,
+    weak_orders: None,
     models: Models::Both,
     accepts: Accepts::Any,
     damping: Damping::Exact("before the step, exact factor"),
@@ -47,7 +48,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "nothing; a free body loses energy and momentum",
     cost: Cost {
-        evaluations: 1,
+        evaluations: Some(1),
         weight: 1.4,
     },
     citation: "Catto, Numerical Methods, GDC 2015; Bullet 3.25, computeGyroscopicImpulseImplicit_Body in btRigidBody.cpp",

@@ -1,7 +1,7 @@
 //! What a method promises, what it takes and where it comes from.
 
-use super::Interval;
-use crate::effect::Depends;
+use crate::body::InertialBlock;
+use crate::effect::{Depends, Load};
 
 #[derive(Clone, Copy, Debug)]
 pub struct MethodInfo {
@@ -13,6 +13,9 @@ pub struct MethodInfo {
     /// Global order of accuracy in attitude, for smooth forces that it accepts. For methods that
     /// choose their own steps, of the formula they use.
     pub order: u32,
+    /// Where forces of the size ε beside the free motion make errors of `ε h^a + ε² h^b + ε³ h^c`: a, b and
+    /// c, of which the last is the order above. a is also the order under torques of time alone.
+    pub weak_orders: Option<[u32; 3]>,
     pub accepts: Accepts,
     pub models: Models,
     pub damping: Damping,
@@ -76,12 +79,19 @@ pub enum Damping {
 /// What it costs, for plans that must not depend on a clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// Evaluations of the equations of motion a step; 0 where it varies.
-    pub evaluations: u32,
+    /// Evaluations of the equations of motion a step, 0 of a closed form; `None` where they vary.
+    pub evaluations: Option<u32>,
     /// Time of a step of one free body alone, in units of a step of rk4, as the benchmark
     /// measured it; of an evaluation at one instant for a closed form. Methods that are exact on a
     /// free body take no steps there: theirs is of a top under gravity, rk4's too.
     pub weight: f64,
+}
+
+impl Cost {
+    /// Evaluations in so many steps. Methods whose evaluations vary count them as they go.
+    pub fn evaluations_in(&self, steps: u64) -> u64 {
+        self.evaluations.map_or(0, |each| steps * u64::from(each))
+    }
 }
 
 /// Why a method does not take a load.
@@ -130,8 +140,7 @@ impl MethodInfo {
     }
 
     /// Why this load would cost the method its order, if it would.
-    pub fn refuses(&self, interval: &Interval) -> Option<Refusal> {
-        let (load, inertial) = (&interval.load, &interval.inertial);
+    pub fn refuses(&self, load: &Load, inertial: &InertialBlock) -> Option<Refusal> {
         let refusal = |why: &str| Some(Refusal(format!("{} {why}", self.name)));
         if self.damping == Damping::Refused && load.decay().is_some() {
             return refusal("takes no damping");

@@ -12,7 +12,7 @@
 //!
 //! Hairer, Lubich & Wanner, Geometric Numerical Integration, IV.8 (Runge-Kutta-Munthe-Kaas, s = 2).
 
-use super::common::{Acceleration, Forces, HalfDecay, damp, each_lane, with_forces};
+use super::common::{Acceleration, DecayFactors, Forces, damp, each_lane, with_forces};
 use super::one_step::OneStep;
 use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{LANES, QuaternionLanes, State, StateBlock};
@@ -28,6 +28,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Fixed,
     order: 2,
+    weak_orders: None,
     accepts: Accepts::Any,
     models: Models::Both,
     damping: Damping::Exact("integrating factor: exact by itself, order 2 with torques"),
@@ -36,7 +37,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "|q| by construction; rotation at constant ω exactly",
     cost: Cost {
-        evaluations: 2,
+        evaluations: Some(2),
         weight: 0.96,
     },
     citation: "Hairer, Lubich & Wanner, Geometric Numerical Integration, IV.8; damping: Lawson 1967",
@@ -50,7 +51,7 @@ impl OneStep for LieMidpoint {
     fn step(&self, t: f64, h: f64, interval: &Interval, state: &mut StateBlock) {
         let (load, inertial) = (&interval.load, &interval.inertial);
         let half = 0.5 * h;
-        let decay = HalfDecay::of(load, half);
+        let decay = DecayFactors::of(load, half);
         let start = *state;
         let mut middle = start;
         let mut room = None;
@@ -78,7 +79,7 @@ impl OneStep for LieMidpoint {
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn advance<F: Forces>(
     h: f64,
-    decay: Option<HalfDecay>,
+    decay: Option<DecayFactors>,
     forces: F,
     interval: &Interval,
     at: &StateBlock,

@@ -5,8 +5,9 @@
 //! from step to step beside the state (a closed form's constants, a step size, a momentum), is its
 //! own. A plain one-step method is a [`OneStep`]: a function from state to state.
 //!
-//! A kernel is written for one body in nalgebra's terms and called for the eight lanes of a block
-//! in a loop that is compiled for the vector widths the processor has.
+//! A kernel is written for one body in nalgebra's terms. Of those that never branch on data the loop over
+//! the eight lanes of a block is compiled for the vector widths the processor has (`common`); the others,
+//! with sines and iterations, go lane by lane over the bodies there are (`scalar`, `kicks`, `own_steps`).
 
 mod buss;
 mod cf4;
@@ -26,6 +27,8 @@ mod momentum_restoring;
 mod one_step;
 mod own_steps;
 mod pieces;
+mod preprocessed;
+mod refused;
 mod rk4;
 mod rkmk4;
 mod scalar;
@@ -35,10 +38,12 @@ mod taylor;
 pub use info::{Accepts, Cost, Damping, Kind, MethodInfo, Models, Refusal};
 pub use pieces::Pieces;
 
-use crate::body::{InertialBlock, StateBlock};
+use crate::body::{InertialBlock, LANES, StateBlock};
 use crate::effect::Load;
 use kicks::Kicks;
 use one_step::Stepped;
+use refused::Refused;
+use std::ops::Range;
 
 /// A stretch of time in which nothing begins, ends or jumps.
 #[derive(Clone, Debug)]
@@ -51,6 +56,13 @@ pub struct Interval {
     pub until: f64,
     /// Error allowed by a method that chooses its own steps, relative to the state.
     pub tolerance: f64,
+}
+
+impl Interval {
+    /// The lanes that hold a body.
+    pub fn lanes(&self) -> Range<usize> {
+        0..self.bodies.min(LANES)
+    }
 }
 
 /// One step of the clock.
@@ -102,9 +114,17 @@ impl std::ops::Add for Work {
 pub trait Method: Sync {
     fn info(&self) -> &'static MethodInfo;
 
-    /// Sets out from `state` at time `t` (s). The load must be one that
-    /// [`MethodInfo::refuses`] accepts.
-    fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper>;
+    /// Sets out from `state` at time `t` (s) under a load that is not refused.
+    fn set_out(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper>;
+
+    /// The same under any load. One that [`MethodInfo::refuses`] is followed nowhere: states that are no
+    /// numbers, so that nobody takes some other motion for the one asked for.
+    fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+        match self.info().refuses(&interval.load, &interval.inertial) {
+            None => self.set_out(interval, t, state),
+            Some(_) => Box::new(Refused::new(&interval, state)),
+        }
+    }
 }
 
 /// A method on its way through an interval.
@@ -163,7 +183,7 @@ pub const METHODS: &[&dyn Method] = &[
     &closed_form::ClosedForm,
 ];
 
-/// The method used where a scene names none: the most accurate of those that take every load.
+/// The method used where a scene names none: of fixed steps, the usual one; it takes every load.
 pub const DEFAULT_METHOD: &str = "rk4";
 
 /// The method of that name, or by which an engine's name is known.

@@ -57,6 +57,7 @@ const RAPIER: MethodInfo = MethodInfo {
     engines: &["rapier"],
     kind: Kind::Fixed,
     order: 1,
+    weak_orders: None,
     models: Models::Both,
     accepts: Accepts::Any,
     damping: Damping::Engine("1/(1 + c h) at the step's end: never turns round, order 1"),
@@ -65,7 +66,7 @@ const RAPIER: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "|L| of a free body in its own gyroscopic step, not L's direction",
     cost: Cost {
-        evaluations: 1,
+        evaluations: Some(1),
         weight: 3.5,
     },
     citation: "Rapier 0.36.1, gyroscopic_corrected_angvel in rigid_body.rs; 4 substeps as by default",
@@ -75,7 +76,7 @@ const JOLT: MethodInfo = MethodInfo {
     name: "jolt",
     engines: &["jolt"],
     cost: Cost {
-        evaluations: 1,
+        evaluations: Some(1),
         weight: 1.5,
     },
     damping: Damping::Engine("max(0, 1 - c h) before the pose: order 1"),

@@ -35,7 +35,7 @@ impl<M: OneStep> Method for Stepped<M> {
         self.0.info()
     }
 
-    fn start(&self, mut interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+    fn set_out(&self, mut interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
         interval.load.settle(t, &interval.inertial, state);
         Box::new(Run {
             method: self.0,
@@ -68,7 +68,7 @@ impl<M: OneStep> Stepper for Run<M> {
     fn work(&self) -> Work {
         Work {
             steps: self.steps,
-            evaluations: self.steps * u64::from(self.method.info().cost.evaluations),
+            evaluations: self.method.info().cost.evaluations_in(self.steps),
         }
     }
 

@@ -9,7 +9,6 @@ mod tests;
 
 use super::{Interval, Step, Stepper, Work};
 use crate::body::{State, StateBlock};
-use nalgebra::{Quaternion, Vector3};
 
 /// One body on its way.
 pub trait Walk: Clone + Send + 'static {
@@ -50,7 +49,7 @@ impl<W: Walk> Run<W> {
             lost: false,
         };
         Self {
-            bodies: (0..interval.bodies).map(walker).collect(),
+            bodies: interval.lanes().map(walker).collect(),
             interval,
             state: *state,
         }
@@ -104,24 +103,13 @@ impl<W: Walk> Walker<W> {
         }
     }
 
-    /// The state at `t`: not a number where the body was lost, so that whoever asks can see it.
+    /// The state at `t`; nowhere where the body was lost.
     fn at(&mut self, interval: &Interval, t: f64) -> State {
         if self.lost {
-            return nowhere();
+            return State::NOWHERE;
         }
         // A clock's last instant may lie a rounding beyond the end.
         let within = t.min(self.body.reached());
         self.body.at(interval, within)
-    }
-}
-
-/// The state of a body that cannot be followed.
-pub fn nowhere() -> State {
-    let nowhere = Vector3::repeat(f64::NAN);
-    State {
-        x_w: nowhere,
-        v_w: nowhere,
-        q_wp: Quaternion::from_parts(f64::NAN, nowhere),
-        omega_w: nowhere,
     }
 }

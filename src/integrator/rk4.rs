@@ -24,7 +24,7 @@
 //! Neither energy nor momentum is kept exactly: both drift as h⁴.
 
 use super::common::{
-    Forces, HalfDecay, Kernel, along, each_lane, march, normalised, rate, with_forces,
+    DecayFactors, Forces, Kernel, along, each_lane, march, normalised, rate, with_forces,
 };
 use super::one_step::OneStep;
 use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models, Step};
@@ -39,6 +39,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Fixed,
     order: 4,
+    weak_orders: None,
     accepts: Accepts::Any,
     models: Models::Both,
     damping: Damping::Exact("integrating factor: exact by itself, order 4 with torques"),
@@ -47,7 +48,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "nothing exactly; energy and momentum drift as h⁴",
     cost: Cost {
-        evaluations: 4,
+        evaluations: Some(4),
         weight: 1.0,
     },
     citation: "Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, II.1; damping: Lawson 1967",
@@ -61,7 +62,7 @@ impl OneStep for Rk4 {
     fn step(&self, t: f64, h: f64, interval: &Interval, state: &mut StateBlock) {
         let (load, inertial) = (&interval.load, &interval.inertial);
         let half = 0.5 * h;
-        let decay = HalfDecay::of(load, half);
+        let decay = DecayFactors::of(load, half);
         let start = *state;
         let mut at = start;
         if let Some(e) = decay {
@@ -173,7 +174,7 @@ fn advance<F: Forces>(
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn advance_decaying<F: Forces>(
     stage: Stage,
-    e: HalfDecay,
+    e: DecayFactors,
     forces: F,
     interval: &Interval,
     start: &StateBlock,
@@ -210,7 +211,7 @@ fn finish<F: Forces>(
     });
 }
 
-fn decay_twice(e: HalfDecay, state: &mut StateBlock) {
+fn decay_twice(e: DecayFactors, state: &mut StateBlock) {
     for lane in 0..LANES {
         state.set(lane, e.times(2).on(state.get(lane)));
     }

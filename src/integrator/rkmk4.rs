@@ -20,7 +20,7 @@
 //! Numerical Integration, IV.8. MuJoCo 4.0: `mj_RungeKutta` (engine_forward.c).
 
 use super::one_step::OneStep;
-use super::scalar::{each, occupied};
+use super::scalar::each;
 use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{Inertial, LANES, State, StateBlock};
 use crate::effect::{Load, Wrench};
@@ -35,6 +35,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &["mujoco-rk4"],
     kind: Kind::Fixed,
     order: 4,
+    weak_orders: None,
     models: Models::Both,
     accepts: Accepts::Any,
     damping: Damping::Engine("torques -c I ω and forces -k m v inside the stages: order 4"),
@@ -43,7 +44,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "|q| by construction; energy and momentum drift as h⁴",
     cost: Cost {
-        evaluations: 4,
+        evaluations: Some(4),
         weight: 7.9,
     },
     citation: "Munthe-Kaas, Appl. Numer. Math. 29 (1999); MuJoCo 4.0, mj_RungeKutta in engine_forward.c",
@@ -87,7 +88,7 @@ impl OneStep for Rkmk4 {
             let ahead = h * fraction;
             let at = each(interval, |lane| start[lane].along(ahead, &last[lane]).s);
             let wrench = load.wrench(t + ahead, inertial, &at);
-            for lane in occupied(interval) {
+            for lane in interval.lanes() {
                 let wrench = wrench
                     .as_ref()
                     .map_or_else(Wrench::default, |w| w.get(lane));

@@ -3,20 +3,14 @@
 
 use super::Interval;
 use super::common::{Acceleration, Applied, Coasting, Forces, RateBlock, rate, with_forces};
-use crate::body::{Inertial, LANES, State, StateBlock};
+use crate::body::{Inertial, State, StateBlock};
 use crate::effect::WrenchBlock;
 use nalgebra::Vector3;
-use std::ops::Range;
-
-/// The lanes that hold a body.
-pub fn occupied(interval: &Interval) -> Range<usize> {
-    0..interval.bodies.min(LANES)
-}
 
 /// The block of what `f` says of each body.
 pub fn each(interval: &Interval, mut f: impl FnMut(usize) -> State) -> StateBlock {
     let mut block = StateBlock::default();
-    for lane in occupied(interval) {
+    for lane in interval.lanes() {
         block.set(lane, f(lane));
     }
     block

@@ -23,6 +23,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Fixed,
     order: 1,
+    weak_orders: None,
     accepts: Accepts::Any,
     models: Models::Both,
     damping: Damping::Exact("after the step, exact factor"),
@@ -31,7 +32,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "angular velocity where no torque acts and the gyroscopic term is absent",
     cost: Cost {
-        evaluations: 1,
+        evaluations: Some(1),
         weight: 0.36,
     },
     citation: "the tutorial; symplectic Euler: Hairer, Lubich & Wanner, Geometric Numerical Integration, I.1.2",

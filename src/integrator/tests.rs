@@ -117,11 +117,6 @@ pub(super) fn slope(points: &[(f64, f64)]) -> f64 {
     sxy / sxx
 }
 
-/// True of methods whose errors have a higher order in weak forces, and of forces of time alone.
-fn is_for_weak_forces(info: &MethodInfo) -> bool {
-    info.name.starts_with("aba")
-}
-
 /// The method's errors over a ladder of step counts, each √2 times the last (or a root of it, for high
 /// orders, whose errors fall so fast): five from where its leading term leads, none where rounding shows.
 pub(super) fn ladder(info: &MethodInfo, error: impl Fn(u32) -> f64) -> Vec<(f64, f64)> {
@@ -129,7 +124,7 @@ pub(super) fn ladder(info: &MethodInfo, error: impl Fn(u32) -> f64) -> Vec<(f64,
     let leading = match info.order {
         1 => 2e-2,
         2 | 3 => 1e-4,
-        4 if is_for_weak_forces(info) => 2e-10,
+        4 if info.weak_orders.is_some() => 2e-10,
         4 => 1e-7,
         5 => 1e-6,
         6..=8 => 1e-8,
@@ -138,7 +133,7 @@ pub(super) fn ladder(info: &MethodInfo, error: impl Fn(u32) -> f64) -> Vec<(f64,
     // Of some thousand steps; high orders are there in a hundred.
     let rounding = if info.order > 6 { 5e-14 } else { 2e-12 };
     let halving = match info.order {
-        4 if is_for_weak_forces(info) => 4.0,
+        4 if info.weak_orders.is_some() => 4.0,
         0..=5 => 2.0,
         6..=8 => 4.0,
         _ => 8.0,
@@ -164,10 +159,9 @@ fn fixed_methods(
     load: &Load,
     bodies: &(InertialBlock, StateBlock),
 ) -> impl Iterator<Item = &'static dyn Method> {
-    let interval = interval(load, bodies.0, 1.0);
     METHODS.iter().copied().filter(move |method| {
         let info = method.info();
-        info.kind == Kind::Fixed && info.refuses(&interval).is_none()
+        info.kind == Kind::Fixed && info.refuses(load, &bodies.0).is_none()
     })
 }
 
@@ -177,7 +171,6 @@ fn methods_of_own_steps(
     load: &Load,
     bodies: &(InertialBlock, StateBlock),
 ) -> impl Iterator<Item = (&'static dyn Method, &'static [f64])> {
-    let interval = interval(load, bodies.0, 1.0);
     METHODS.iter().copied().filter_map(move |method| {
         let info = method.info();
         let tolerances: &[f64] = match info.kind {
@@ -185,7 +178,7 @@ fn methods_of_own_steps(
             Kind::Adaptive => &[1e-6, 1e-9, 1e-12, 1e-15],
             Kind::Closed => &[0.0],
         };
-        let takes = info.refuses(&interval).is_none();
+        let takes = info.refuses(load, &bodies.0).is_none();
         takes.then_some((method, tolerances))
     })
 }
@@ -207,6 +200,21 @@ fn by_tolerance(
     let end = advance_block(method, interval, &bodies.1, &steps(t, 7)).get(0);
     let radians = 1.0 + bodies.1.get(0).omega_w.norm() * t;
     (end, (100.0 * tolerance + 2e-15) * radians)
+}
+
+#[test]
+fn evaluations_are_declared_where_their_number_is_fixed() {
+    for info in METHODS.iter().map(|method| method.info()) {
+        let declared = info.cost.evaluations;
+        let fits = match info.kind {
+            Kind::Fixed => declared.is_some_and(|each| each > 0),
+            Kind::Adaptive => declared.is_none(),
+            Kind::Closed => declared == Some(0),
+        };
+        assert!(fits, "{}: {declared:?}", info.name);
+        let order = info.weak_orders.map_or(info.order, |[_, _, order]| order);
+        assert_eq!(order, info.order, "{}", info.name);
+    }
 }
 
 #[track_caller]
@@ -447,8 +455,9 @@ fn has_its_order_driven(driven: Driven, t: f64) {
         };
         has_order(method, "place", |n| (end(n).x_w - x).norm());
         has_order(method, "velocity", |n| (end(n).v_w - v).norm());
-        if is_for_weak_forces(method.info()) {
-            // Their orders for a torque of time alone are 8 and 10: a hundred steps leave rounding.
+        if let Some([alone, _, _]) = method.info().weak_orders {
+            // That is their order for a torque of time alone, 8 and 10: a hundred steps leave rounding.
+            assert!(alone >= 8);
             let end = end(100);
             assert!((end.omega_w.y - omega).abs() < 1e-13 && angle(end.q_wp, q) < 1e-13);
             continue;
@@ -769,13 +778,8 @@ fn methods_that_say_so_keep_the_momentum_of_a_free_body_over_a_million_steps() {
         let after = inertials.get(0).momentum_w(&end);
         let gap = (after - before).norm() / before.norm();
         let name = method.info().name;
-        let bound = match name.starts_with("buss") {
-            // From ω to L and back at every step, some roundings each: a random walk of a million.
-            true => 1e-12,
-            // L is kept as it is; ω = R I⁻¹ Rᵀ L and back are four rotations by a q of unit length.
-            false => 5e-15,
-        };
-        assert!(gap < bound, "{name}: {gap}");
+        // L is kept as it is; ω = R I⁻¹ Rᵀ L and back are four rotations by a q of unit length.
+        assert!(gap < 5e-15, "{name}: {gap}");
         seen += 1;
     }
     assert!(seen > 4);

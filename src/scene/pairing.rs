@@ -5,7 +5,6 @@ use super::table::Table;
 use super::{Body, Event, Scene, Stepping};
 use crate::body::{Inertial, InertialBlock};
 use crate::effect::{Called, Load};
-use crate::integrator::Interval;
 use std::sync::Arc;
 
 /// Why a scene's method does not take it, and which event it is, if it is one.
@@ -42,7 +41,7 @@ pub(super) fn refusal(scene: &Scene) -> Option<String> {
 }
 
 fn unpaired(scene: &Scene) -> Vec<Unpaired> {
-    let Stepping::Method { method, tolerance } = scene.stepping else {
+    let Stepping::Method { method, .. } = scene.stepping else {
         return Vec::new();
     };
     let mut found = Vec::new();
@@ -50,16 +49,7 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
         let (inertial, q_bp) = Inertial::new(&body.properties, body.pivot_b);
         let mut block = InertialBlock::default();
         block.set(0, inertial);
-        let refuses = |load: Load| {
-            let interval = Interval {
-                load,
-                inertial: block,
-                bodies: 1,
-                until: scene.duration,
-                tolerance,
-            };
-            method.info().refuses(&interval)
-        };
+        let refuses = |load: Load| method.info().refuses(&load, &block);
         if let Some(refusal) = refuses(lasting(scene)) {
             let why = format!("{}: {refusal}", body.name);
             found.push(Unpaired { why, event: None });

@@ -135,8 +135,8 @@ impl Group {
     }
 
     /// Why a method does not take what acts now.
-    pub fn refusal(&self, method: &dyn Method, until: f64) -> Option<Refusal> {
-        method.info().refuses(&self.interval(until))
+    pub fn refusal(&self, method: &dyn Method) -> Option<Refusal> {
+        method.info().refuses(&self.load, &self.inertial)
     }
 
     fn interval(&self, until: f64) -> Interval {

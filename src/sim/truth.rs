@@ -95,7 +95,7 @@ impl Truth {
             (Known::Exact { mut body, mut now }, Some(method)) => {
                 move_to(&mut body, &mut now, t);
                 body.load(scene, active);
-                let takes = body.refusal(method, until).is_none();
+                let takes = body.refusal(method).is_none();
                 takes.then(|| {
                     body.set_out(&mut Exactly(method), t, until);
                     body
@@ -161,7 +161,9 @@ fn move_to(body: &mut Group, now: &mut f64, t: f64) {
 /// What the model keeps of a body under its load.
 fn kept((subject, sample, group, body): Simulated<'_>) -> Option<Kept> {
     let weights = group.weights(body)?;
-    let directions = weights.iter().filter_map(|w| Unit::try_new(w.force_w, 0.0));
+    // A force at the reference point turns nothing.
+    let levers = weights.iter().filter(|w| w.point_b != Vector3::zeros());
+    let directions = levers.filter_map(|w| Unit::try_new(w.force_w, 0.0));
     let along = directions.clone().next();
     if let Some(first) = along {
         let mut others = directions;

@@ -1,5 +1,5 @@
 //! The free body of Moser and Veselov, discrete in time and integrable, with the moments that make its
-//! steps those of the real body to order 2, 4, 6, 8 or 10 ([`preprocessed`]):
+//! steps those of the real body to order 2, 4, 6, 8 or 10 ([`Preprocessed`]):
 //!
 //! ```text
 //! a = ½ h m / Ĩ    c = (1 + |c|²) a + ((Ĩ2 - Ĩ3)/Ĩ1 c2 c3, …)    q' = q (1 + c), normalised
@@ -13,18 +13,14 @@
 //! Moser & Veselov, Commun. Math. Phys. 139 (1991) 217; McLachlan & Zanna, Found. Comput. Math. 5 (2005) 87;
 //! Hairer & Vilmart, J. Phys. A 39 (2006) 13225.
 
-mod preprocessed;
-
-pub use preprocessed::Preprocessed;
-
-use super::coast::{Passage, coasting, omega_w};
-use super::own_steps::nowhere;
+use super::coast::{Course, Passage, constant_accelerations};
+use super::preprocessed::Preprocessed;
 use super::{
     Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Step, Stepper, Work,
 };
-use crate::body::{Inertial, LANES, State, StateBlock};
+use crate::body::StateBlock;
 use crate::effect::Decay;
-use nalgebra::{Quaternion, Vector3};
+use nalgebra::Quaternion;
 
 /// One of the orders.
 pub struct Dmv(&'static MethodInfo);
@@ -49,6 +45,7 @@ const fn info(name: &'static str, order: u32, weight: f64) -> MethodInfo {
         engines: &[],
         kind: Kind::Fixed,
         order,
+        weak_orders: None,
         accepts: Accepts::Free,
         models: Models::Gyroscopic,
         damping: Damping::Exact("exact: the undamped motion at a slower time"),
@@ -57,7 +54,7 @@ const fn info(name: &'static str, order: u32, weight: f64) -> MethodInfo {
         exact_free: false,
         preserves: "angular momentum and energy to rounding; only the phase drifts",
         cost: Cost {
-            evaluations: 1,
+            evaluations: Some(1),
             weight,
         },
         citation: "Moser & Veselov, Commun. Math. Phys. 139 (1991) 217; Hairer & Vilmart, J. Phys. A 39 (2006) 13225, section 4",
@@ -69,19 +66,13 @@ impl Method for Dmv {
         self.0
     }
 
-    fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
-        // A body for which it has no motion shall not be taken for one.
-        let refused = self.0.refuses(&interval).is_some();
-        let forces = coasting(&interval.load, &interval.inertial);
-        let bodies = (0..interval.bodies.min(LANES)).map(|lane| {
-            let body = interval.inertial.get(lane);
-            let start = if refused { nowhere() } else { state.get(lane) };
+    fn set_out(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+        let accelerations = constant_accelerations(&interval, t, state);
+        let bodies = interval.lanes().map(|lane| {
+            let (inertial, start) = (interval.inertial.get(lane), state.get(lane));
             Body {
-                inertial: body,
-                start,
-                momentum_w: body.momentum_w(&start),
-                a_w: forces[lane].unwrap_or_default(),
-                moments: Preprocessed::new(body.moments, self.0.order),
+                course: Course::new(inertial, &start, accelerations[lane]),
+                discrete: Preprocessed::new(inertial.moments, self.0.order),
                 q_wp: start.q_wp,
             }
         });
@@ -97,13 +88,8 @@ impl Method for Dmv {
 
 #[derive(Clone)]
 struct Body {
-    inertial: Inertial,
-    start: State,
-    /// At the start, world, kg m²/s.
-    momentum_w: Vector3<f64>,
-    /// m/s².
-    a_w: Vector3<f64>,
-    moments: Preprocessed,
+    course: Course,
+    discrete: Preprocessed,
     /// Now.
     q_wp: Quaternion<f64>,
 }
@@ -121,30 +107,13 @@ struct Run {
 impl Run {
     fn step(&mut self, step: &Step) {
         let decay = self.decay.as_ref();
-        let left = Passage::of(step.from - self.set_out, decay).angular_left();
-        let s = Passage::of(step.h, decay).turning();
+        let left = decay.map_or(1.0, |decay| decay.angular_factor(step.from - self.set_out));
+        let s = decay.map_or(step.h, |decay| decay.angular(step.h).time);
         for body in &mut self.bodies {
-            body.q_wp = (body.moments).attitude(s, body.q_wp, body.momentum_w * left);
+            let momentum_w = body.course.momentum_w(left);
+            body.q_wp = body.discrete.attitude(s, body.q_wp, momentum_w);
         }
         self.now = step.to;
-    }
-}
-
-impl Body {
-    /// `t` seconds after the start.
-    fn state(&self, t: f64, decay: Option<&Decay>) -> State {
-        let gone = Passage::of(t, decay);
-        let (x_w, v_w) = gone.translated(&self.start, self.a_w);
-        State {
-            x_w,
-            v_w,
-            q_wp: self.q_wp,
-            omega_w: omega_w(
-                &self.inertial,
-                self.q_wp,
-                self.momentum_w * gone.angular_left(),
-            ),
-        }
     }
 }
 
@@ -161,9 +130,9 @@ impl Stepper for Run {
 
     fn state(&self) -> StateBlock {
         let mut states = StateBlock::default();
+        let gone = Passage::of(self.now - self.set_out, self.decay.as_ref());
         for (lane, body) in self.bodies.iter().enumerate() {
-            let t = self.now - self.set_out;
-            states.set(lane, body.state(t, self.decay.as_ref()));
+            states.set(lane, body.course.at(&gone, body.q_wp));
         }
         states
     }

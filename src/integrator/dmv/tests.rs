@@ -1,12 +1,11 @@
 //! What the discrete body alone has: energy, refusals, and where its steps end.
 
 use super::*;
+use crate::body::State;
 use crate::effect::{Couple, Frame, Load};
 use crate::integrator::METHODS;
-use crate::integrator::tests::{
-    advance, angle, block, free_triaxial, gyroscopic, interval, spinning,
-};
-use nalgebra::UnitQuaternion;
+use crate::integrator::tests::{advance, angle, block, free_triaxial, gyroscopic, spinning};
+use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
 const ALL: [Dmv; 5] = [DMV2, DMV4, DMV6, DMV8, DMV10];
@@ -54,7 +53,7 @@ fn the_tutorials_model_and_any_torque_are_refused() {
         torque: Frame::World(Vector3::x()),
     }));
     for method in ALL {
-        let why = |load: &Load| method.info().refuses(&interval(load, bodies.0, 1.0));
+        let why = |load: &Load| method.info().refuses(load, &bodies.0);
         assert!(why(&gyroscopic()).is_none());
         let model = why(&Load::default()).unwrap().0;
         assert!(model.contains("gyroscopic = true"), "{model}");

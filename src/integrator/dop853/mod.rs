@@ -43,6 +43,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Adaptive,
     order: 8,
+    weak_orders: None,
     models: Models::Both,
     accepts: Accepts::Any,
     damping: Damping::Exact("integrating factor: exact by itself, to the tolerance with torques"),
@@ -51,7 +52,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "a free body's momentum; all else to its tolerance",
     cost: Cost {
-        evaluations: 0,
+        evaluations: None,
         // A step of its own, tolerance 1e-12.
         weight: 8.8,
     },
@@ -63,7 +64,7 @@ impl Method for Dop853 {
         &INFO
     }
 
-    fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+    fn set_out(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
         let blocks = interval.clone();
         Box::new(Run::new(interval, state, |lane| {
             Body::new(&blocks, lane, t, &state.get(lane))

@@ -69,6 +69,7 @@ const fn info(
         engines: &[],
         kind: Kind::Fixed,
         order,
+        weak_orders: None,
         accepts: Accepts::Place,
         models: Models::Both,
         damping: Damping::Exact("exact, as part of the free motion"),
@@ -77,7 +78,7 @@ const fn info(
         exact_free: true,
         preserves: "free motion exactly; symplectic: energy under forces of place stays within bounds",
         cost: Cost {
-            evaluations,
+            evaluations: Some(evaluations),
             weight,
         },
         citation,
@@ -164,13 +165,16 @@ pub const ORDER8: Composition = Composition {
 };
 
 pub const ABA864: Composition = Composition {
-    info: info(
-        "aba864",
-        4,
-        7,
-        4.4,
-        "Blanes, Casas, Farrés, Laskar, Makazaga & Murua, Appl. Numer. Math. 68 (2013) 58, ABA(8,6,4)",
-    ),
+    info: MethodInfo {
+        weak_orders: Some([8, 6, 4]),
+        ..info(
+            "aba864",
+            4,
+            7,
+            4.4,
+            "Blanes, Casas, Farrés, Laskar, Makazaga & Murua, Appl. Numer. Math. 68 (2013) 58, ABA(8,6,4)",
+        )
+    },
     first: First::Drift,
     a: &closed::<8>(&[
         0.0711334264982231177779,
@@ -185,13 +189,16 @@ pub const ABA864: Composition = Composition {
 };
 
 pub const ABA1064: Composition = Composition {
-    info: info(
-        "aba1064",
-        4,
-        8,
-        5.1,
-        "Blanes, Casas, Farrés, Laskar, Makazaga & Murua, Appl. Numer. Math. 68 (2013) 58, ABA(10,6,4)",
-    ),
+    info: MethodInfo {
+        weak_orders: Some([10, 6, 4]),
+        ..info(
+            "aba1064",
+            4,
+            8,
+            5.1,
+            "Blanes, Casas, Farrés, Laskar, Makazaga & Murua, Appl. Numer. Math. 68 (2013) 58, ABA(10,6,4)",
+        )
+    },
     first: First::Drift,
     a: &closed::<9>(&[
         0.0380944974224121954570,

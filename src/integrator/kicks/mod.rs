@@ -30,7 +30,6 @@ mod turning;
 pub use composition::{ABA864, ABA1064, Composition, ORDER8, RKN4, RKN6, STRANG};
 
 use super::coast::{Coast, Passage, coasting, omega_w};
-use super::own_steps::nowhere;
 use super::{Interval, Method, MethodInfo, Step, Stepper, Work};
 use crate::body::{Inertial, State, StateBlock};
 use crate::effect::WrenchBlock;
@@ -47,19 +46,14 @@ impl Method for Kicks {
         &self.0.info
     }
 
-    fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
-        // A load that would cost it its order shall not be taken in silence.
-        let refused = self.0.info.refuses(&interval).is_some();
+    fn set_out(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
         let gyroscopic = interval.load.gyroscopic();
         let forces = coasting(&interval.load, &interval.inertial);
-        let mut block = *state;
         let (mut coasting, mut kicked) = (Vec::new(), Vec::new());
-        for (lane, force) in forces.iter().enumerate().take(interval.bodies) {
-            let inertial = interval.inertial.get(lane);
-            let start = if refused { nowhere() } else { state.get(lane) };
-            block.set(lane, start);
-            match *force {
-                Some(a_w) => coasting.push((lane, Coast::new(inertial, gyroscopic, start, a_w))),
+        for lane in interval.lanes() {
+            let (inertial, start) = (interval.inertial.get(lane), state.get(lane));
+            match forces[lane] {
+                Some(a_w) => coasting.push((lane, Coast::new(inertial, gyroscopic, &start, a_w))),
                 None => kicked.push(Kicked {
                     lane,
                     inertial,
@@ -77,7 +71,7 @@ impl Method for Kicks {
             coasting: coasting.into(),
             set_out: t,
             kicked,
-            block,
+            block: *state,
             ahead: 0.0,
             now: t,
             asked: None,
@@ -141,9 +135,9 @@ impl Kicked {
     /// A: the body's state but for ω, which no kick looks at.
     #[inline]
     fn drift(&mut self, by: &Passage, s: &mut State) {
-        (s.x_w, s.v_w) = by.translated(s, Vector3::zeros());
-        s.q_wp = self.turning.attitude(by.turning(), s.q_wp, self.stays_w);
-        self.stays_w *= by.angular_left();
+        *s = by.translated(*s);
+        s.q_wp = (self.turning).attitude(by.angular.time, s.q_wp, self.stays_w);
+        self.stays_w *= by.angular.factor;
     }
 
     fn omega_w(&self, s: &State) -> Vector3<f64> {
@@ -253,8 +247,9 @@ impl Stepper for Run {
             state.omega_w = body.omega_w(&state);
             states.set(body.lane, state);
         }
+        let gone = Passage::of(self.now - self.set_out, decay);
         for (lane, coast) in self.coasting.iter() {
-            states.set(*lane, coast.at(self.now - self.set_out, decay));
+            states.set(*lane, coast.at(&gone));
         }
         states
     }

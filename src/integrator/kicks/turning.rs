@@ -2,9 +2,10 @@
 
 use crate::body::Inertial;
 use crate::exact::FreeMotion;
-use crate::integrator::dmv::Preprocessed;
+use crate::integrator::preprocessed::Preprocessed;
 use crate::math::{exponential, turned};
 use nalgebra::{Quaternion, Vector3};
+use std::sync::Arc;
 
 /// Up to this `h |L| / I_min` (rad; no less than h |ω|) the discrete body of order 10 is the real one
 /// to rounding: its error, which grows as the 11th power, is below 6e-17 rad for every kind of body
@@ -18,7 +19,7 @@ pub enum Turning {
     Momentum {
         moments: Vector3<f64>,
         least: f64,
-        discrete: Box<Preprocessed>,
+        discrete: Arc<Preprocessed>,
     },
     /// The tutorial's model: ω stays.
     Velocity,
@@ -30,7 +31,7 @@ impl Turning {
             true => Self::Momentum {
                 moments: body.moments,
                 least: body.moments.min(),
-                discrete: Box::new(Preprocessed::new(body.moments, 10)),
+                discrete: Arc::new(Preprocessed::new(body.moments, 10)),
             },
             false => Self::Velocity,
         }

@@ -41,7 +41,7 @@ pub struct Turning {
     pub constant: Four,
     /// Torque of each direction: columns, for the components of u_d.
     pub maps: [[Four; 3]; 3],
-    /// `c I`, N·m·s.
+    /// c, 1/s.
     pub drag: Four,
 }
 
@@ -147,7 +147,7 @@ impl Turning {
             rest: inverses.map(|inverse| inverse.lo).into(),
             constant: constant.into(),
             maps,
-            drag: (i * drag).into(),
+            drag: Vector3::repeat(drag).into(),
         }
     }
 }

@@ -25,8 +25,9 @@ mod law;
 mod recurrence;
 mod travel;
 
-use super::flight::{Elapsed, Flight};
-use super::own_steps::{Run, Walk, nowhere};
+use super::coast::Passage;
+use super::flight::Flight;
+use super::own_steps::{Run, Walk};
 use super::{Accepts, Cost, Damping, Interval, Kind, Method, MethodInfo, Models, Stepper, Work};
 use crate::body::{State, StateBlock};
 use four::{Four, larger};
@@ -44,6 +45,7 @@ const INFO: MethodInfo = MethodInfo {
     engines: &[],
     kind: Kind::Adaptive,
     order: 20,
+    weak_orders: None,
     models: Models::Both,
     accepts: Accepts::Terms,
     damping: Damping::Within("a linear term of the recurrences: to the tolerance, as all else"),
@@ -52,7 +54,7 @@ const INFO: MethodInfo = MethodInfo {
     exact_free: false,
     preserves: "nothing exactly; everything to its tolerance",
     cost: Cost {
-        evaluations: 0,
+        evaluations: None,
         // A step of its own, tolerance 1e-12: order 15.
         weight: 3.9,
     },
@@ -64,15 +66,13 @@ impl Method for Taylor {
         &INFO
     }
 
-    fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
-        // Forces that are no terms are refused; nobody shall take the motion for one without them.
-        let terms = interval.load.terms(&interval.inertial);
-        let known = terms.is_some();
-        let terms = terms.unwrap_or_default();
+    fn set_out(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+        // Forces that are no terms were refused.
+        let terms = interval.load.terms(&interval.inertial).unwrap_or_default();
         let tolerance = interval.tolerance;
         let from = interval.clone();
         Box::new(Run::new(interval, state, |lane| {
-            let start = if known { state.get(lane) } else { nowhere() };
+            let start = state.get(lane);
             Body::new(Law::new(&from, &terms, lane, &start), tolerance, t, &start)
         }))
     }
@@ -117,6 +117,9 @@ enum Route {
 const NONE: usize = rows(0);
 const ONE: usize = rows(1);
 const AXES: usize = rows(3);
+
+/// Tries with a measure of time a thousandth of the last.
+const SHORTER: u32 = 8;
 
 /// Below this (rad/s) a spin is no measure of time: its powers would underflow, and what a torque makes
 /// of it within a step is far more.
@@ -246,7 +249,17 @@ impl Walk for Body {
             self.unit = power_of_two(self.reached - self.from);
         }
         self.expand();
-        let length = self.length();
+        let mut length = self.length();
+        // Where a spin of next to nothing was the measure of time, powers of it overflow: a shorter
+        // measure will do.
+        for _ in 0..SHORTER {
+            if length > 0.0 {
+                break;
+            }
+            self.unit *= 1.0 / 1024.0;
+            self.expand();
+            length = self.length();
+        }
         if length.is_nan() {
             return None;
         }
@@ -279,7 +292,8 @@ impl Walk for Body {
         };
         let place = match &self.route {
             Route::Flight(flight) => {
-                flight.at(Elapsed::linear(interval.load.decay(), t - self.set_out))
+                let gone = Passage::of(t - self.set_out, interval.load.decay());
+                flight.at(&gone.linear)
             }
             Route::Journey(journey) if ends => journey.end(),
             Route::Journey(journey) => journey.at(s),

@@ -188,6 +188,7 @@ fn spun<const ROWS: usize>(
         let [x, y, z, _] = order[rows(d)].0;
         torque += map[0] * x + map[1] * y + map[2] * z;
     }
-    let turning = law.spread * sums.products + (torque - law.drag * order[OMEGA]);
-    (turning * law.inverse + turning * law.rest) * step
+    let turning = law.spread * sums.products + torque;
+    // The decay is of ω itself: of an axis that no torque turns as well.
+    ((turning * law.inverse + turning * law.rest) - law.drag * order[OMEGA]) * step
 }
