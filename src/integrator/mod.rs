@@ -3,7 +3,7 @@
 //! A method sets out from a state under a load that stays ([`Method::start`]) and from then on is
 //! asked for the states after some steps ([`Stepper::advance`]). What it prepares once, or carries
 //! from step to step beside the state (a closed form's constants, a step size, a momentum), is its
-//! own. A plain one-step method is a [`OneStep`]: a function from state to state.
+//! own. A plain one-step method is a `OneStep`: a function from state to state.
 //!
 //! A kernel is written for one body in nalgebra's terms. Of those that never branch on data the loop over
 //! the eight lanes of a block is compiled for the vector widths the processor has (`common`); the others,
