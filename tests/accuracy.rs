@@ -102,6 +102,115 @@ fn a_stated_accuracy_is_kept_to() {
     }
 }
 
+/// An upright top too slow to stand: what it is off by grows e-fold by e-fold, and a plan's first
+/// guesses fall short. What the reference allows is kept all the same.
+#[test]
+fn an_accuracy_is_kept_to_where_errors_grow() {
+    let scene = |accuracy: &str| {
+        parse(&format!(
+            r#"
+            duration = 12.0
+            [stepping]
+            accuracy = {accuracy}
+            [effects]
+            gyroscopic = true
+            gravity = [0.0, 0.0, -1.0]
+            [[body]]
+            name = "top"
+            mass = 1.0
+            inertia = [0.5, 0.875, 1.25]
+            position = [0.0, 0.0, 0.5]
+            pivot = [0.0, 0.0, -0.5]
+            angular_velocity = [9.5367431640625e-7, 0.0, 0.0]
+            "#
+        ))
+    };
+    for accuracy in ["1e-2", "2e-3", "1e-4", "1e-6"] {
+        let (_, plan) = end(&scene(accuracy));
+        let plan = plan.unwrap();
+        let asked: f64 = accuracy.parse().unwrap();
+        assert!(plan.achieved + plan.uncertainty <= asked, "{accuracy}");
+    }
+}
+
+/// Damping is of velocities, and so of those about axes that nothing turns.
+#[test]
+fn held_axes_are_damped_by_every_way() {
+    let source = |stepping: &str| {
+        parse(&format!(
+            r#"
+            duration = 3.0
+            [stepping]
+            {stepping}
+            [record]
+            rate = 10
+            state = 10
+            [effects]
+            damping = {{ angular = 1.0 }}
+            [[body]]
+            name = "b"
+            mass = 1.0
+            inertia = [0.5, 0.8, 1.1]
+            immovable = ["x", "y", "z"]
+            angular_velocity = [0.4, 1.0, 0.2]
+            [[event]]
+            at = 0.5
+            for = 1.0
+            body = "b"
+            torque = [1.0, 2.0, 3.0]
+            "#
+        ))
+    };
+    let exact = Vector3::new(0.4, 1.0, 0.2) * (-3.0_f64).exp();
+    for stepping in [
+        "accuracy = 1e-9",
+        "method = \"taylor\"\nstep = 0.1",
+        "method = \"dop853\"\nstep = 0.1",
+        "method = \"rk4\"\nstep = 0.001",
+        "method = \"rkn6\"\nstep = 0.01",
+    ] {
+        let (outcome, _) = end(&source(stepping));
+        let gap = (outcome.end[0].motion.omega_w - exact).norm();
+        // Factors of e^{-c h} to rounding each, or the tolerance of 1e-12 a step.
+        assert!(gap < 1e-11, "{stepping}: {gap:e}");
+    }
+}
+
+/// A body that has all but come to rest, and is pushed: a reference must be able to set out from there.
+#[test]
+fn a_push_after_all_has_settled() {
+    let source = |at: f64| {
+        parse(&format!(
+            r#"
+            duration = 25.0
+            [stepping]
+            accuracy = 1e-6
+            [record]
+            rate = 10
+            [effects]
+            gyroscopic = true
+            damping = {{ angular = 2.0, linear = 2.0 }}
+            [[body]]
+            name = "b"
+            mass = 1.0
+            inertia = [0.5, 0.8, 1.1]
+            velocity = [1.0, 0.0, 0.0]
+            angular_velocity = [1.0, 2.0, 0.5]
+            [[event]]
+            at = {at}
+            for = 0.5
+            body = "b"
+            force = [1.0, 2.0, 0.0]
+            point = {{ body = [0.1, 0.2, 0.3] }}
+            "#
+        ))
+    };
+    for at in [10.0, 17.0, 20.0, 24.0] {
+        let (_, plan) = end(&source(at));
+        assert!(plan.unwrap().achieved < 1e-6, "{at}");
+    }
+}
+
 #[test]
 fn less_accuracy_is_cheaper() {
     let pieces = |accuracy: f64| {
