@@ -321,7 +321,8 @@ fn pushes_at_awkward_times_cost_no_method_its_order() {
             method: integrator::find(method.name).unwrap(),
             tolerance: 1e-12,
         };
-        if method.kind != Kind::Fixed || stated.refusal().is_some() {
+        // An order of 1 is what a step that an event cuts would have: there is none to lose.
+        if method.kind != Kind::Fixed || method.order < 2 || stated.refusal().is_some() {
             continue;
         }
         seen += 1;
@@ -352,7 +353,7 @@ fn pushes_at_awkward_times_cost_no_method_its_order() {
         let order = f64::from(method.order);
         assert!(slope > 0.7 * order, "{}: {slope} {errors:?}", method.name);
     }
-    assert!(seen >= 10, "{seen}");
+    assert!(seen >= 8, "{seen}");
 }
 
 /// What a recording says of its own error, by a second way.

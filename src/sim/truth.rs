@@ -34,6 +34,9 @@ enum Known {
 
 struct Kept {
     weights: Vec<Weight>,
+    /// Where the reference point was, world, m: heights count from there, so that a scene far from
+    /// the origin loses no digits.
+    origin_w: Vector3<f64>,
     /// Kinetic and potential, J.
     energy: f64,
     momentum_w: Vector3<f64>,
@@ -131,7 +134,7 @@ impl Truth {
                 self.energy = self.energy.max(kinetic);
                 self.momentum = self.momentum.max(momentum_w.norm());
                 let change = momentum_w - kept.momentum_w;
-                let energy = kinetic + potential(&kept.weights, subject, sample) - kept.energy;
+                let energy = kinetic + kept.potential(subject, sample) - kept.energy;
                 let momentum = kept.along.map_or(change.norm(), |d| change.dot(&d).abs());
                 (None, energy, momentum)
             }
@@ -172,20 +175,25 @@ fn kept((subject, sample, group, body): Simulated<'_>) -> Option<Kept> {
             return None;
         }
     }
-    Some(Kept {
-        energy: subject.energy(&sample.motion) + potential(&weights, subject, sample),
+    let mut kept = Kept {
+        origin_w: sample.reference_w(subject),
+        energy: 0.0,
         momentum_w: subject.momentum_w(&sample.motion),
         along,
         weights,
-    })
+    };
+    kept.energy = subject.energy(&sample.motion) + kept.potential(subject, sample);
+    Some(kept)
 }
 
-/// `-Σ F · p`, p where the force acts.
-fn potential(weights: &[Weight], subject: &Subject, sample: &Sample) -> f64 {
-    let reference_w = sample.reference_w(subject);
-    let of = |weight: &Weight| {
-        let point_w = reference_w + sample.motion.q_wb * weight.point_b;
-        -weight.force_w.dot(&point_w)
-    };
-    weights.iter().map(of).sum()
+impl Kept {
+    /// `-Σ F · p`, p where the force acts, J.
+    fn potential(&self, subject: &Subject, sample: &Sample) -> f64 {
+        let reference_w = sample.reference_w(subject) - self.origin_w;
+        let of = |weight: &Weight| {
+            let point_w = reference_w + sample.motion.q_wb * weight.point_b;
+            -weight.force_w.dot(&point_w)
+        };
+        self.weights.iter().map(of).sum()
+    }
 }
