@@ -12,7 +12,7 @@
 use super::check::{self, Checked, apart, largest, radius_of_gyration};
 use super::reference::{Reference, by_truth, exact_to, truest};
 use crate::body::{Inertial, State, StateBlock};
-use crate::integrator::{Interval, Kind, Method, Pieces, Step, Stepper};
+use crate::integrator::{Kind, Method, Step};
 use crate::scene::{Scene, Stepping};
 use crate::sim::{Choice, Choose, Setting, SimError};
 use crate::trace::short;
@@ -331,16 +331,13 @@ impl<'a> Trial<'a> {
 
     /// The states at the ends of the steps, and how many steps the method itself took.
     fn run(&self, choice: Choice) -> (Vec<StateBlock>, u64) {
-        let interval = Interval {
-            tolerance: choice.tolerance,
-            ..self.setting.interval.clone()
-        };
-        let (t, state) = (self.setting.from, self.setting.state);
-        let stepper = choice.method.start(interval, t, state);
-        let mut stepper: Box<dyn Stepper> = match choice.pieces {
-            1 => stepper,
-            pieces => Box::new(Pieces::new(stepper, pieces)),
-        };
+        let Setting {
+            interval,
+            from,
+            state,
+            ..
+        } = *self.setting;
+        let mut stepper = choice.start(interval.clone(), from, state);
         let mut kept = Vec::with_capacity(self.steps.len());
         stepper.advance(&self.steps, &mut kept);
         (kept, stepper.work().steps)

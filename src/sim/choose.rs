@@ -1,7 +1,7 @@
 //! Who decides by which method bodies get through an interval.
 
 use crate::body::StateBlock;
-use crate::integrator::{Interval, Method};
+use crate::integrator::{Interval, Method, Pieces, Stepper};
 use crate::scene::{Scene, Stepping};
 use std::ops::Range;
 
@@ -13,6 +13,21 @@ pub struct Choice {
     pub pieces: u32,
     /// For a method with steps of its own.
     pub tolerance: f64,
+}
+
+impl Choice {
+    /// Sets out by it from `state` at time `t` (s); the tolerance is the choice's.
+    pub fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
+        let interval = Interval {
+            tolerance: self.tolerance,
+            ..interval
+        };
+        let stepper = self.method.start(interval, t, state);
+        match self.pieces {
+            1 => stepper,
+            pieces => Box::new(Pieces::new(stepper, pieces)),
+        }
+    }
 }
 
 /// Where an interval lies, and with whom it begins.

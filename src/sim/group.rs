@@ -4,7 +4,7 @@ use super::Jump;
 use super::choose::{Choose, Setting};
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
 use crate::effect::{Frame, Load, Push, Term, WrenchBlock};
-use crate::integrator::{Interval, Kind, Method, Pieces, Refusal, Step, Stepper, Work};
+use crate::integrator::{Interval, Kind, Method, Refusal, Step, Stepper, Work};
 use crate::mass::tensor;
 use crate::scene::{Body, Event, Framed, Scene, lasting};
 use crate::trace::{Deviation, Motion, PointForce, Sample, Subject};
@@ -116,22 +116,17 @@ impl Group {
     /// Sets out from here, at time `t`, by the way that is chosen for the time `until` the next
     /// event.
     pub fn set_out(&mut self, chooser: &mut dyn Choose, t: f64, until: f64) {
-        let mut interval = self.interval(until);
+        let interval = self.interval(until);
         let choice = chooser.choose(&Setting {
             members: self.members.clone(),
             interval: &interval,
             from: t,
             state: &self.state,
         });
-        interval.tolerance = choice.tolerance;
         self.done = self.work();
         self.method = choice.method.info().name;
         self.steps = Some(choice.method.info().kind);
-        let stepper = choice.method.start(interval, t, &self.state);
-        self.stepper = Some(match choice.pieces {
-            1 => stepper,
-            pieces => Box::new(Pieces::new(stepper, pieces)),
-        });
+        self.stepper = Some(choice.start(interval, t, &self.state));
     }
 
     /// Why a method does not take what acts now.

@@ -5,7 +5,7 @@
 //! a torque acts the model may still keep something: the energy of constant forces at points of the
 //! body, and of the angular momentum what lies along them.
 
-use super::choose::{Choice, Choose, Setting};
+use super::choose::{Choice, Stated};
 use super::group::{Group, Weight};
 use crate::integrator::{Kind, METHODS, Method, Step};
 use crate::math::angle_between;
@@ -53,18 +53,6 @@ fn closed_form() -> Option<&'static dyn Method> {
     METHODS.iter().copied().find(closed)
 }
 
-struct Exactly(&'static dyn Method);
-
-impl Choose for Exactly {
-    fn choose(&mut self, _: &Setting<'_>) -> Choice {
-        Choice {
-            method: self.0,
-            pieces: 1,
-            tolerance: f64::EPSILON,
-        }
-    }
-}
-
 impl Truth {
     /// Of a body alone in its group, as the scene starts it.
     pub fn new(body: Group) -> Self {
@@ -100,7 +88,12 @@ impl Truth {
                 body.load(scene, active);
                 let takes = body.refusal(method).is_none();
                 takes.then(|| {
-                    body.set_out(&mut Exactly(method), t, until);
+                    let mut exactly = Stated(Choice {
+                        method,
+                        pieces: 1,
+                        tolerance: f64::EPSILON,
+                    });
+                    body.set_out(&mut exactly, t, until);
                     body
                 })
             }
