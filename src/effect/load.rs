@@ -136,6 +136,11 @@ impl Load {
         Some(wrench)
     }
 
+    /// Every effect that applies a force or torque, in the order they were added.
+    pub fn effects(&self) -> impl Iterator<Item = &dyn Effect> {
+        self.effects.iter().map(|effect| &**effect)
+    }
+
     /// What the applied forces and torques depend on.
     pub fn depends(&self, inertial: &InertialBlock) -> Depends {
         let each = self.effects.iter().map(|effect| effect.depends(inertial));

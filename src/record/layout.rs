@@ -12,6 +12,8 @@ use super::picture::DRAWN;
 use super::price;
 use super::rrd::RrdFile;
 use super::scale;
+use super::sources;
+use crate::sim::GYROSCOPIC;
 use crate::trace::{Subject, short};
 use nalgebra::Vector3;
 use rerun::AsComponents;
@@ -53,10 +55,15 @@ struct Plot {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum About {
     Motion,
+    Sources,
     Accuracy,
 }
 
-const TABS: [(About, &str); 2] = [(About::Motion, "motion"), (About::Accuracy, "accuracy")];
+const TABS: [(About, &str); 3] = [
+    (About::Motion, "motion"),
+    (About::Sources, "torque by source"),
+    (About::Accuracy, "accuracy"),
+];
 
 const PLOTS: [Plot; 9] = [
     Plot {
@@ -160,6 +167,9 @@ pub fn legend(setting: &Setting<'_>) -> String {
             short(heading.impulse_shown_for()),
             short(heading.scales.impulse)
         );
+    }
+    if !sources::all_names(setting.subjects).is_empty() {
+        text += "- **with a source's name, in its colour**: the torque of that source alone, at the scale of the torque; all of them add up to I α (plots: *torque by source*); the gyroscopic term's is hidden at first\n";
     }
     if heading.streams.contains("inertia") {
         text += "- **green ellipsoid**: uniform, with the body's mass and its inertia about the centre of mass (true size)\n";
@@ -295,6 +305,7 @@ fn body_tab(
         let drawn = component_plot(blueprint, setting.heading, plot, index, subject)?;
         plots.push((plot.about, drawn));
     }
+    plots.extend(source_plots(blueprint, setting, subject)?);
     if let Some(plots) = tabbed(blueprint, &plots)? {
         columns.push(plots);
         shares.push(2.4);
@@ -303,7 +314,7 @@ fn body_tab(
 }
 
 /// What the picture holds besides the arrows.
-const SPATIAL: [&str; 4] = ["bodies", "labels", "pivots", "inertia"];
+const SPATIAL: [&str; 5] = ["bodies", "labels", "pivots", "inertia", "sources"];
 
 /// Everything the picture holds, by quantity.
 fn pictured() -> impl Iterator<Item = &'static str> {
@@ -345,7 +356,11 @@ fn spatial(
         contents,
         properties,
         visualizers: Vec::new(),
-        hidden: hidden.map(|drawn| format!("/{}", drawn.stream)).collect(),
+        hidden: hidden
+            .map(|drawn| drawn.stream.to_owned())
+            .chain([format!("sources/{GYROSCOPIC}")])
+            .map(|stream| format!("/{stream}"))
+            .collect(),
     })
 }
 
@@ -431,7 +446,72 @@ fn magnitude_plots(
         let drawn = time_series(blueprint, &title, visualizers.collect())?;
         plots.push((plot.about, drawn));
     }
+    plots.extend(source_magnitudes(blueprint, setting)?);
     Ok(plots)
+}
+
+/// How the torques of a body's sources add up, axis by axis.
+fn source_plots(
+    blueprint: &mut Blueprint<'_>,
+    setting: &Setting<'_>,
+    subject: &Subject,
+) -> Result<Vec<(About, Part)>, RecordError> {
+    if subject.sources.is_empty() {
+        return Ok(Vec::new());
+    }
+    let all = sources::all_names(setting.subjects);
+    let axes = sources::PARTS.into_iter().take(3);
+    axes.map(|axis| {
+        let series = |name: &str, colour, width| {
+            let series = SeriesLines::new()
+                .with_names([name])
+                .with_colors([colour])
+                .with_widths([width]);
+            let path = sources::numbers_path(subject, name);
+            (path, vec![line(setting.heading, series, axis)])
+        };
+        // The sum first, so that the parts are drawn over it.
+        let mut lines = vec![series(
+            sources::SUM,
+            look::lightened(look::NAME, 0.25),
+            3.5_f32,
+        )];
+        for name in &subject.sources {
+            lines.push(series(name, sources::colour(name, &all), 1.5));
+        }
+        let title = format!("τ.{axis} by source; sum = I α (N·m)");
+        Ok((About::Sources, time_series(blueprint, &title, lines)?))
+    })
+    .collect()
+}
+
+/// The torque of every source of every body, by its length, while that can be read.
+fn source_magnitudes(
+    blueprint: &mut Blueprint<'_>,
+    setting: &Setting<'_>,
+) -> Result<Vec<(About, Part)>, RecordError> {
+    if let [subject] = setting.subjects {
+        return source_plots(blueprint, setting, subject);
+    }
+    let all = sources::all_names(setting.subjects);
+    let plot = |&source: &&str| {
+        let with = setting.subjects.iter().take(MOST_TABS).enumerate();
+        let with = with.filter(|(_, subject)| subject.sources.iter().any(|name| name == source));
+        let lines = with.map(|(k, subject)| {
+            let series = SeriesLines::new()
+                .with_names([subject.name.as_str()])
+                .with_colors([look::BODIES[k % look::BODIES.len()]])
+                .with_widths([1.5_f32]);
+            let path = sources::numbers_path(subject, source);
+            (path, vec![line(setting.heading, series, "length")])
+        });
+        let title = format!("|τ| by {source} (N·m)");
+        Ok((
+            About::Sources,
+            time_series(blueprint, &title, lines.collect())?,
+        ))
+    };
+    all.iter().map(plot).collect()
 }
 
 /// The components of one body's vector.

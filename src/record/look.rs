@@ -15,6 +15,19 @@ pub const INERTIA: Colour = 0x37_B2_4D_FF;
 pub const PIVOT: Colour = 0x86_8E_96_FF;
 pub const NAME: Colour = 0x80_88_90_FF;
 
+/// What turns a body, in the order of the scene: a torque's source has the same colour in every
+/// picture and plot of a recording.
+pub const SOURCES: [Colour; 8] = [
+    0xE8_59_0C_FF,
+    0x1C_7E_D6_FF,
+    0x2B_8A_3E_FF,
+    0xD6_33_6C_FF,
+    0x0C_85_99_FF,
+    0x91_67_E0_FF,
+    0x9C_74_00_FF,
+    0x75_84_94_FF,
+];
+
 /// Components of a vector in a plot of one body: x, y, z.
 pub const COMPONENTS: [Colour; 3] = [0xE0_31_31_FF, 0x2B_8A_3E_FF, 0x33_7A_E0_FF];
 
@@ -80,7 +93,8 @@ mod tests {
     #[test]
     fn every_colour_reads_on_dark_and_on_light() {
         let quantities = [FORCE, TORQUE, ALPHA, OMEGA, MOMENTUM, INERTIA];
-        let all = quantities.iter().chain(&COMPONENTS).chain(&BODIES);
+        let lines = SOURCES.iter().chain(&COMPONENTS).chain(&BODIES);
+        let all = quantities.iter().chain(lines);
         for &colour in all {
             let on_white = match colour {
                 ALPHA | INERTIA => 2.7,

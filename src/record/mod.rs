@@ -17,6 +17,7 @@ mod price;
 mod recorder;
 mod rrd;
 mod scale;
+mod sources;
 mod viewer;
 
 pub use heading::Heading;

@@ -41,6 +41,11 @@ pub fn page(
             row(&mut text, quantity, vector);
         }
     }
+    for (name, torque) in subject.sources.iter().zip(&sample.sources) {
+        let cells = short_numbers(torque.as_slice()).join(" | ");
+        let length = short(torque.norm());
+        let _ = writeln!(text, "| torque by {name} (N·m) | {cells} | {length} |");
+    }
     for quantity in quantities {
         values.clear();
         (quantity.write)(subject, sample, &mut values);

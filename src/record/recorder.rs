@@ -10,6 +10,7 @@ use super::page;
 use super::picture::{Impulses, Picture, pictures};
 use super::price;
 use super::rrd::{RrdFile, Store};
+use super::sources::{self, Sources};
 use crate::trace::{
     Instant, Motion, Note, NoteKind, Quantity, Sample, Sink, SinkError, Subject, Track,
 };
@@ -51,6 +52,8 @@ struct BodyRecorder {
     subject: Subject,
     quantities: Vec<&'static Quantity>,
     pictures: Vec<Box<dyn Picture>>,
+    /// Where its torques are told apart.
+    sources: Option<Sources>,
     pages: Option<Vec<String>>,
     state_times: Times,
     positions: Vec<f32>,
@@ -96,8 +99,10 @@ impl Recorder {
         if let Some(cost) = &heading.price {
             price::write(&mut file, cost)?;
         }
+        let sources = sources::all_names(subjects);
         for (k, subject) in subjects.iter().enumerate() {
-            let body = BodyRecorder::new(subject, k, heading);
+            let mut body = BodyRecorder::new(subject, k, heading);
+            body.sources = Sources::of(subject, &sources, &heading.scales);
             body.statics(&mut file, k, heading)?;
             bodies.push(body);
         }
@@ -210,6 +215,7 @@ impl BodyRecorder {
             values: quantities.iter().map(|_| Default::default()).collect(),
             quantities,
             pictures: pictures(streams, &heading.scales),
+            sources: None,
             pages: has_page.then(Vec::new),
             state_times: Times::default(),
             positions: Vec::new(),
@@ -249,6 +255,9 @@ impl BodyRecorder {
         }
         for picture in &self.pictures {
             picture.statics(file, subject)?;
+        }
+        if let Some(sources) = &self.sources {
+            sources.statics(file, subject)?;
         }
         if self.pages.is_some() {
             let markdown = TextDocument::update_fields().with_media_type(MediaType::markdown());
@@ -290,6 +299,9 @@ impl BodyRecorder {
         }
         for picture in &mut self.pictures {
             picture.row(at, &self.subject, sample);
+        }
+        if let Some(sources) = &mut self.sources {
+            sources.row(at, &self.subject, sample);
         }
         if let Some(pages) = &mut self.pages {
             pages.push(page::page(&self.subject, at, sample, &self.quantities));
@@ -340,6 +352,9 @@ impl BodyRecorder {
         for picture in &mut self.pictures {
             picture.flush(file, &self.subject)?;
         }
+        if let Some(sources) = &mut self.sources {
+            sources.flush(file, &self.subject)?;
+        }
         if let Some(pages) = &mut self.pages {
             let pages = std::mem::take(pages);
             let ends = Ends::uniform(pages.len(), 1);
@@ -351,6 +366,6 @@ impl BodyRecorder {
 }
 
 /// A column of f64 that plots can take for their scalars.
-fn number_descriptor(name: &'static str) -> ComponentDescriptor {
+pub(super) fn number_descriptor(name: &'static str) -> ComponentDescriptor {
     ComponentDescriptor::partial(name).with_component_type(Scalar::name())
 }

@@ -36,7 +36,12 @@ impl Scales {
 
     /// Metres per unit.
     pub fn of(&self, drawn: &Drawn) -> f64 {
-        let index = DRAWN.iter().position(|other| other.stream == drawn.stream);
+        self.of_stream(drawn.stream)
+    }
+
+    /// Of the stream's arrows, metres per unit.
+    pub fn of_stream(&self, stream: &str) -> f64 {
+        let index = DRAWN.iter().position(|drawn| drawn.stream == stream);
         index.map_or(1.0, |index| self.factors[index])
     }
 

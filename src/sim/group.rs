@@ -2,6 +2,7 @@
 
 use super::Jump;
 use super::choose::{Choose, Setting};
+use super::sources::Parts;
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
 use crate::effect::{Frame, Load, Push, Term, WrenchBlock};
 use crate::integrator::{Interval, Kind, Method, Refusal, Step, Stepper, Work};
@@ -20,6 +21,8 @@ pub struct Group {
     load: Load,
     /// The pushes in `load`, for the force arrows.
     pushes: Vec<Push>,
+    /// What is told apart of what turns each lane, by name.
+    sources: Vec<Vec<String>>,
     /// Body axes → principal axes of each lane.
     q_pb: [UnitQuaternion<f64>; LANES],
     /// The method on its way from the last event on.
@@ -73,6 +76,7 @@ pub fn subject(body: &Body) -> Subject {
             q_wb: body.q_wb,
             omega_w: body.omega_w,
         },
+        sources: Vec::new(),
         solid: body.solid.clone(),
     }
 }
@@ -96,6 +100,7 @@ impl Group {
             state: StateBlock::default(),
             load: Load::default(),
             pushes: Vec::new(),
+            sources: Vec::new(),
             q_pb: [UnitQuaternion::identity(); LANES],
             stepper: None,
             before: None,
@@ -262,6 +267,11 @@ impl Group {
         }
     }
 
+    /// Tells apart what turns these bodies, from now on.
+    pub fn watch(&mut self, subjects: &[Subject]) {
+        self.sources = subjects.iter().map(|s| s.sources.clone()).collect();
+    }
+
     /// The torque about the reference point that an event applies by itself, world, N·m.
     pub fn torque_of(&self, event: &Event) -> Vector3<f64> {
         let lane = event.body - self.members.start;
@@ -328,16 +338,26 @@ impl Group {
 
     fn samples_of(&self, t: f64, block: &StateBlock) -> Vec<Sample> {
         let wrench = self.wrench(t, block);
+        let parts = self.parts(t, block);
         (0..self.members.len())
-            .map(|lane| self.sample_of(lane, block.get(lane), &wrench))
+            .map(|lane| self.sample_of(lane, block.get(lane), &wrench, &parts))
             .collect()
     }
 
     /// The same of one body.
     pub fn sample(&self, body: usize, t: f64) -> Sample {
         let wrench = self.wrench(t, &self.state);
+        let parts = self.parts(t, &self.state);
         let lane = body - self.members.start;
-        self.sample_of(lane, self.state.get(lane), &wrench)
+        self.sample_of(lane, self.state.get(lane), &wrench, &parts)
+    }
+
+    /// Each effect's own share, where any body wants to know it.
+    fn parts(&self, t: f64, block: &StateBlock) -> Parts {
+        match self.sources.iter().all(Vec::is_empty) {
+            true => Parts::default(),
+            false => Parts::of(&self.load, t, &self.inertial, block),
+        }
     }
 
     fn wrench(&self, t: f64, block: &StateBlock) -> WrenchBlock {
@@ -345,7 +365,7 @@ impl Group {
         wrench.unwrap_or_default()
     }
 
-    fn sample_of(&self, lane: usize, state: State, wrench: &WrenchBlock) -> Sample {
+    fn sample_of(&self, lane: usize, state: State, wrench: &WrenchBlock, parts: &Parts) -> Sample {
         let inertial = self.inertial.get(lane);
         let mut tau_w = wrench.get(lane).tau_w;
         let mut alpha_w = match self.load.gyroscopic() {
@@ -362,6 +382,9 @@ impl Group {
             tau_w,
             alpha_w,
             pushes: pushes.map(|push| acting(push, &state)).collect(),
+            sources: self.sources.get(lane).map_or_else(Vec::new, |names| {
+                parts.torques(names, (&self.load, lane), &inertial, &state)
+            }),
             deviation: Deviation::default(),
             step_time: None,
         }

@@ -5,10 +5,12 @@ mod group;
 mod schedule;
 mod script;
 mod sizes;
+mod sources;
 mod truth;
 
 pub use choose::{Choice, Choose, Setting, Stated};
 pub use sizes::Sizes;
+pub use sources::GYROSCOPIC;
 
 use crate::body::LANES;
 use crate::integrator::{Kind, Step, Work};
@@ -127,7 +129,11 @@ impl<'s> Simulation<'s> {
             timed: scene.record.streams.contains("step_time"),
             step_time: None,
         };
+        if scene.record.streams.contains("sources") {
+            sources::tell_apart(scene, &mut simulation.subjects);
+        }
         for group in &mut simulation.groups {
+            group.watch(&simulation.subjects[group.members.clone()]);
             group.load(scene, &[]);
         }
         simulation

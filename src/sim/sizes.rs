@@ -1,5 +1,6 @@
 //! How large quantities get, as far as can be told before the first step.
 
+use super::sources::GYROSCOPIC;
 use crate::trace::{Sample, Subject};
 
 /// The largest magnitude of each quantity that a picture draws; 0 where there is none.
@@ -39,6 +40,11 @@ impl Sizes {
             grow(&mut self.force, push.force_w.norm());
         }
         grow(&mut self.torque, tau);
+        // Drawn at the scale of their sum, so that they compare.
+        let sources = subject.sources.iter().zip(&sample.sources);
+        for (_, source) in sources.filter(|(name, _)| *name != GYROSCOPIC) {
+            grow(&mut self.torque, source.norm());
+        }
         grow(&mut self.alpha, alpha);
         grow(
             &mut self.omega,

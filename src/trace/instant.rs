@@ -43,6 +43,8 @@ pub struct Subject {
     pub inertia_c: Matrix3<f64>,
     /// How it starts: what a camera looks at.
     pub start: Motion,
+    /// What turns it, by name, where that is told apart: [`Sample::sources`] are in this order.
+    pub sources: Vec<String>,
     /// What it looks like, where that is known.
     pub solid: Option<Arc<dyn Solid>>,
 }
@@ -114,6 +116,9 @@ pub struct Sample {
     pub alpha_w: Vector3<f64>,
     /// The pushes that act.
     pub pushes: Vec<PointForce>,
+    /// The torque of each of [`Subject::sources`] about the reference point, world, N·m; zero while
+    /// it does not act. Their sum is `I α`, what a held axis takes included.
+    pub sources: Vec<Vector3<f64>>,
     pub deviation: Deviation,
     /// Wall time a step took of late, s, where it is measured.
     pub step_time: Option<f64>,

@@ -38,6 +38,12 @@ pub const STREAMS: &[Stream] = &[
         by_default: true,
     },
     Stream {
+        name: "sources",
+        quantities: &[],
+        about: "the torque of each source by itself, gyroscopic term and damping among them, where there are several: they add up to I α",
+        by_default: true,
+    },
+    Stream {
         name: "alpha",
         quantities: &[&q::ALPHA, &q::ALPHA_NORM],
         about: "angular acceleration by the model, gyroscopic term included where the scene has it",

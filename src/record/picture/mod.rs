@@ -6,6 +6,7 @@ mod impulse;
 mod vector;
 
 pub use impulse::Impulses;
+pub use vector::{Shown, VectorPicture};
 
 use super::RecordError;
 use super::look::{self, Colour};
@@ -122,12 +123,20 @@ pub fn pictures(streams: StreamSet, scales: &Scales) -> Vec<Box<dyn Picture>> {
     chosen
         .map(|drawn| -> Box<dyn Picture> {
             let scale = scales.of(drawn);
+            let vector = |value: fn(&Subject, &Sample) -> Vector3<f64>| {
+                VectorPicture::new(Shown {
+                    stream: drawn.stream.to_owned(),
+                    symbol: drawn.symbol.to_owned(),
+                    unit: drawn.unit,
+                    colour: drawn.colour,
+                    scale,
+                    value: Box::new(value),
+                })
+            };
             match drawn.glyph {
                 Glyph::Push => Box::new(force::ForcePicture::new(drawn, scale)),
-                Glyph::Arrow(value) => Box::new(vector::VectorPicture::new(drawn, scale, value)),
-                Glyph::Turning(value) => {
-                    Box::new(vector::VectorPicture::new(drawn, scale, value).turning())
-                }
+                Glyph::Arrow(value) => Box::new(vector(value)),
+                Glyph::Turning(value) => Box::new(vector(value).turning()),
             }
         })
         .collect()

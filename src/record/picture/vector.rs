@@ -9,7 +9,7 @@ use super::super::RecordError;
 use super::super::columns::{Column, Ends, Times, strips, texts, vectors};
 use super::super::look::{self, Colour};
 use super::super::rrd::RrdFile;
-use super::{Drawn, Picture};
+use super::Picture;
 use crate::trace::{Instant, Sample, Subject, brief};
 use nalgebra::Vector3;
 use rerun::archetypes::{Arrows3D, CoordinateFrame, LineStrips3D, Points3D, Transform3D};
@@ -21,11 +21,21 @@ const RING_PLACE: f64 = 0.8;
 const RING_ARC: f64 = 1.75 * std::f64::consts::PI;
 const RING_PIECES: usize = 28;
 
-pub struct VectorPicture {
-    drawn: &'static Drawn,
+/// Which vector, and how it looks.
+pub struct Shown {
+    /// The first part of its entities' paths.
+    pub stream: String,
+    /// What its label says before the number.
+    pub symbol: String,
+    pub unit: &'static str,
+    pub colour: Colour,
     /// m per unit.
-    scale: f64,
-    value: fn(&Subject, &Sample) -> Vector3<f64>,
+    pub scale: f64,
+    pub value: Box<dyn Fn(&Subject, &Sample) -> Vector3<f64>>,
+}
+
+pub struct VectorPicture {
+    shown: Shown,
     times: Times,
     arrows: Arrows,
     labels: Labels,
@@ -109,15 +119,9 @@ impl Arrows {
 }
 
 impl VectorPicture {
-    pub fn new(
-        drawn: &'static Drawn,
-        scale: f64,
-        value: fn(&Subject, &Sample) -> Vector3<f64>,
-    ) -> Self {
+    pub fn new(shown: Shown) -> Self {
         Self {
-            drawn,
-            scale,
-            value,
+            shown,
             times: Times::default(),
             arrows: Arrows::default(),
             labels: Labels::default(),
@@ -132,12 +136,12 @@ impl VectorPicture {
     }
 
     fn path(&self, subject: &Subject) -> String {
-        format!("/{}/{}", self.drawn.stream, subject.name)
+        format!("/{}/{}", self.shown.stream, subject.name)
     }
 
     /// The frame of the data: at the reference point, without the body's turn, in the unit.
     fn frame(&self, subject: &Subject) -> String {
-        format!("{}@{}", self.drawn.stream, subject.name)
+        format!("{}@{}", self.shown.stream, subject.name)
     }
 
     /// Where along the arrow its label stands: at the tip of a torque, beyond that of the longer others.
@@ -189,30 +193,30 @@ impl Picture for VectorPicture {
             Some(_) => format!("tf#/pivots/{}", subject.name),
             None => format!("tf#/bodies/{}", subject.name),
         };
-        let scaling = Transform3D::from_scale(self.scale as f32)
+        let scaling = Transform3D::from_scale(self.shown.scale as f32)
             .with_child_frame(frame.as_str())
             .with_parent_frame(parent.as_str());
         file.statics(
-            format!("/frames/{}/{}", self.drawn.stream, subject.name),
+            format!("/frames/{}/{}", self.shown.stream, subject.name),
             &[&scaling],
         )?;
         let arrows = Arrows3D::update_fields()
-            .with_colors([self.drawn.colour])
+            .with_colors([self.shown.colour])
             .with_radii([self.radius()]);
         let here = CoordinateFrame::new(frame);
         let path = self.path(subject);
         file.statics(path.as_str(), &[&here, &arrows])?;
         file.statics(
             format!("{path}/label"),
-            &[&here, &Labels::statics(self.drawn.colour)],
+            &[&here, &Labels::statics(self.shown.colour)],
         )?;
         if self.turns.is_some() {
             let bold = Radius::new_ui_points(look::BOLD);
             let ring = LineStrips3D::update_fields()
-                .with_colors([self.drawn.colour])
+                .with_colors([self.shown.colour])
                 .with_radii([bold]);
             let head = Arrows3D::update_fields()
-                .with_colors([self.drawn.colour])
+                .with_colors([self.shown.colour])
                 .with_radii([bold]);
             file.statics(format!("{path}/turn"), &[&here, &ring, &head])?;
         }
@@ -220,7 +224,7 @@ impl Picture for VectorPicture {
     }
 
     fn row(&mut self, at: Instant, subject: &Subject, sample: &Sample) {
-        let value = (self.value)(subject, sample);
+        let value = (self.shown.value)(subject, sample);
         let length = value.norm();
         let shown = length.is_finite() && length > 0.0;
         self.times.push(at);
@@ -228,9 +232,9 @@ impl Picture for VectorPicture {
             self.arrows.push(Vector3::zeros(), value);
             let label = format!(
                 "{} {} {}",
-                self.drawn.symbol,
+                self.shown.symbol,
                 brief(length),
-                self.drawn.unit
+                self.shown.unit
             );
             self.labels.push(value * self.label_place(), label);
         }

@@ -1,0 +1,84 @@
+//! Which of a body's torques did this? Each source by itself.
+//!
+//! ```text
+//! I α = Σ τ_source - ω × (I ω) - c I ω
+//! ```
+//!
+//! The last two are the model's own (where a scene has them) and stand beside what is applied: only
+//! then do the parts add up to what turns the body. Sources are told apart by name; two pushes at
+//! once are one source.
+
+use crate::body::{Inertial, InertialBlock, State, StateBlock};
+use crate::effect::{Called, Load, WrenchBlock};
+use crate::scene::Scene;
+use crate::trace::Subject;
+use nalgebra::Vector3;
+
+/// The model's own term, which of a fast body is many times what is applied.
+pub const GYROSCOPIC: &str = "gyroscopic";
+const DAMPING: &str = "damping";
+
+/// Names every source of torque on each body; none where one says all there is to say.
+pub fn tell_apart(scene: &Scene, subjects: &mut [Subject]) {
+    for (k, (subject, body)) in subjects.iter_mut().zip(&scene.bodies).enumerate() {
+        let (inertial, _) = Inertial::new(&body.properties, body.pivot_b);
+        let mut block = InertialBlock::default();
+        block.set(0, inertial);
+        let turns = |called: &Called| match called {
+            // The weight of a free body, say, turns nothing.
+            Called::Load(effect) => effect.depends(&block).torque,
+            Called::Gyroscopic => true,
+            Called::Decay(decay) => decay.angular_rate() > 0.0,
+            Called::Off => false,
+        };
+        let lasting = scene.effects.iter().filter(|(_, called)| turns(called));
+        let mut names: Vec<String> = lasting.map(|(name, _)| (*name).to_owned()).collect();
+        for event in scene.events.iter().filter(|event| event.body == k) {
+            let lasting = event.action.lasts() > 0.0;
+            let noun = event.action.noun().to_owned();
+            if lasting && !names.contains(&noun) {
+                names.push(noun);
+            }
+        }
+        if names.len() > 1 {
+            subject.sources = names;
+        }
+    }
+}
+
+/// What each effect applies to a block, by the effect's name.
+#[derive(Default)]
+pub struct Parts(Vec<(&'static str, WrenchBlock)>);
+
+impl Parts {
+    pub fn of(load: &Load, t: f64, inertial: &InertialBlock, state: &StateBlock) -> Self {
+        let part = |effect: &dyn crate::effect::Effect| {
+            let mut wrench = WrenchBlock::default();
+            effect.add(t, inertial, state, &mut wrench);
+            (effect.name(), wrench)
+        };
+        Self(load.effects().map(part).collect())
+    }
+
+    /// The torques of these sources on a lane.
+    pub fn torques(
+        &self,
+        names: &[String],
+        (load, lane): (&Load, usize),
+        inertial: &Inertial,
+        state: &State,
+    ) -> Vec<Vector3<f64>> {
+        let momentum_w = || inertial.momentum_w(state);
+        let own = |name: &str| match (name, load.decay()) {
+            (GYROSCOPIC, _) if load.gyroscopic() => -state.omega_w.cross(&momentum_w()),
+            (DAMPING, Some(decay)) => -momentum_w() * decay.angular_rate(),
+            _ => Vector3::zeros(),
+        };
+        let applied = |name: &String| -> Vector3<f64> {
+            let parts = self.0.iter().filter(|(part, _)| part == name);
+            parts.map(|(_, wrench)| wrench.get(lane).tau_w).sum()
+        };
+        let total = |name: &String| own(name) + applied(name);
+        names.iter().map(total).collect()
+    }
+}
