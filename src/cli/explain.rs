@@ -2,6 +2,7 @@
 
 use super::print;
 use crate::cost::{self, Plan, Planned};
+use crate::integrator::Kind;
 use crate::trace::{Subject, short};
 use serde::Serialize;
 
@@ -55,12 +56,20 @@ fn row(planned: &Planned, subjects: &[Subject]) -> Vec<String> {
         planned.choice.method.info().name.to_owned(),
         match planned.step {
             Some(step) => cost::time(step),
-            None => planned.choice.method.info().kind.describe().to_owned(),
+            None => own_way(planned),
         },
         planned
             .expected
             .map_or("–".to_owned(), |error| format!("{error:.1e}")),
     ]
+}
+
+/// How a method gets through time that is given no step.
+fn own_way(planned: &Planned) -> String {
+    match planned.choice.method.info().kind {
+        Kind::Adaptive => format!("its own, by tolerance {:.0e}", planned.choice.tolerance),
+        kind => kind.describe().to_owned(),
+    }
 }
 
 /// The same as data.
@@ -82,6 +91,9 @@ struct Interval {
     active: Vec<&'static str>,
     method: &'static str,
     step: Option<f64>,
+    /// Of a method with steps of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tolerance: Option<f64>,
     expected: Option<f64>,
 }
 
@@ -96,6 +108,8 @@ pub fn report(plan: &Plan, subjects: &[Subject]) -> Report {
         active: planned.effects.clone(),
         method: planned.choice.method.info().name,
         step: planned.step,
+        tolerance: (planned.choice.method.info().kind == Kind::Adaptive)
+            .then_some(planned.choice.tolerance),
         expected: planned.expected,
     };
     Report {

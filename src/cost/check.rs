@@ -8,13 +8,19 @@ use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
 use std::time::Duration;
 
-/// What is compared of a body at an instant.
+/// Where a body is, as far as errors go.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Checked {
+pub struct Pose {
     pub q_wb: UnitQuaternion<f64>,
     /// The centre of mass of a free body in its radii of gyration, `√(tr I / 2m)`, world; nothing for
     /// a held one, whose attitude says where it is.
     pub place: Vector3<f64>,
+}
+
+/// What is compared of a body at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Checked {
+    pub pose: Pose,
     /// About the reference point, world, kg m²/s.
     pub momentum_w: Vector3<f64>,
     /// Kinetic, J.
@@ -24,12 +30,15 @@ pub struct Checked {
 impl Checked {
     pub fn of(subject: &Subject, sample: &Sample) -> Self {
         Self {
-            q_wb: sample.motion.q_wb,
-            place: match (subject.pivot_b, subject.mass) {
-                (None, Some(mass)) => {
-                    sample.motion.position_w / radius_of_gyration(subject.inertia_c.trace(), mass)
-                }
-                _ => Vector3::zeros(),
+            pose: Pose {
+                q_wb: sample.motion.q_wb,
+                place: match (subject.pivot_b, subject.mass) {
+                    (None, Some(mass)) => {
+                        let radius = radius_of_gyration(subject.inertia_c.trace(), mass);
+                        sample.motion.position_w / radius
+                    }
+                    _ => Vector3::zeros(),
+                },
             },
             momentum_w: subject.momentum_w(&sample.motion),
             energy: subject.energy(&sample.motion),
@@ -42,10 +51,10 @@ pub fn radius_of_gyration(trace: f64, mass: f64) -> f64 {
     (0.5 * trace / mass).sqrt()
 }
 
-/// How far two states of a body are apart, rad: the angle between the attitudes, or the distance
+/// How far two poses of a body are apart, rad: the angle between the attitudes, or the distance
 /// between the places in radii of gyration, whichever is more. (A point of the body moves by about
 /// that part of its size either way.)
-pub fn apart(a: &Checked, b: &Checked) -> f64 {
+pub fn apart(a: &Pose, b: &Pose) -> f64 {
     let (turned, moved) = (angle_between(a.q_wb, b.q_wb), (a.place - b.place).norm());
     // Not f64::max, which would hide what is not a number.
     if moved.is_nan() || moved > turned {
@@ -174,7 +183,7 @@ impl Run {
         debug_assert!(self.is_at_the_instants_of(other));
         let bodies = (0..self.bodies()).map(|k| {
             let pairs = self.of(k).zip(other.of(k));
-            largest(pairs.map(|(a, b)| apart(a, b)))
+            largest(pairs.map(|(a, b)| apart(&a.pose, &b.pose)))
         });
         largest(bodies)
     }

@@ -9,7 +9,7 @@
 //! Costs are counted (steps times what a step costs, [`crate::integrator::Cost`]), not timed: the
 //! same scene has the same plan on every machine.
 
-use super::check::{self, Checked, apart, largest, radius_of_gyration};
+use super::check::{self, Pose, apart, largest, radius_of_gyration};
 use super::reference::{Reference, by_truth, exact_to, truest};
 use crate::body::{Inertial, State, StateBlock};
 use crate::integrator::{Kind, Method, Step};
@@ -397,26 +397,24 @@ impl<'a> Trial<'a> {
         let lanes = 0..self.setting.members.len();
         let each = lanes.flat_map(|lane| {
             let body = self.setting.interval.inertial.get(lane);
-            let checked = move |block: &StateBlock| checked(&body, &block.get(lane));
+            let pose = move |block: &StateBlock| pose(&body, &block.get(lane));
             let pairs = states.iter().zip(truth);
-            pairs.map(move |(a, b)| apart(&checked(a), &checked(b)))
+            pairs.map(move |(a, b)| apart(&pose(a), &pose(b)))
         });
         largest(each)
     }
 }
 
-/// What is compared of a body in its principal axes.
-fn checked(body: &Inertial, s: &State) -> Checked {
+/// In principal axes.
+fn pose(body: &Inertial, s: &State) -> Pose {
     let free = body.inv_mass > 0.0;
     let radius = radius_of_gyration(body.moments.sum(), body.mass);
-    Checked {
+    Pose {
         q_wb: UnitQuaternion::new_unchecked(s.q_wp),
         place: if free {
             s.x_w / radius
         } else {
             Vector3::zeros()
         },
-        momentum_w: body.momentum_w(s),
-        energy: 0.0,
     }
 }
