@@ -33,7 +33,7 @@ impl MassProperties {
         if !(1e-150..=1e150).contains(&mass) {
             return Err(UnphysicalMass::Mass(mass));
         }
-        tensor::check_physical(&inertia_c)?;
+        tensor::check_held(&inertia_c, immovable)?;
         Ok(Self {
             mass: Some(mass),
             inertia_c,
@@ -54,7 +54,7 @@ impl MassProperties {
     /// about it must stay within what an f64 computes with.
     pub fn check_about(&self, point_b: Vector3<f64>) -> Result<(), Unphysical> {
         match self.mass {
-            Some(_) => tensor::check_physical(&self.inertia_about(point_b)),
+            Some(_) => tensor::check_held(&self.inertia_about(point_b), self.immovable),
             None => Ok(()),
         }
     }

@@ -58,7 +58,7 @@ pub enum Unphysical {
     #[error("its principal moment {0} is not above zero; a moment of inertia is a sum of m r²")]
     NotPositive(f64),
     #[error(
-        "its smallest principal moment is rounding beside its largest, {0} kg m²; give a thin body some thickness, or hold that axis (immovable)"
+        "its smallest principal moment is nothing beside its largest, {0} kg m²; give a thin body some thickness, or hold that axis (immovable)"
     )]
     TooThin(f64),
     #[error(
@@ -86,6 +86,12 @@ const RANGE: f64 = 1e150;
 /// Accepts the tensors that some rigid body has: finite, symmetric, positive, and no principal
 /// moment larger than the sum of the other two (each is `∫ (y² + z²) dm` and so on).
 pub fn check_physical(inertia: &Matrix3<f64>) -> Result<(), Unphysical> {
+    check_held(inertia, [false; 3])
+}
+
+/// The same of a body that some of its own axes hold. There may be no moment about them: a thin rod
+/// that does not turn about itself.
+pub fn check_held(inertia: &Matrix3<f64>, immovable: [bool; 3]) -> Result<(), Unphysical> {
     if !inertia.iter().all(|x| x.is_finite()) {
         return Err(Unphysical::NotFinite);
     }
@@ -104,15 +110,19 @@ pub fn check_physical(inertia: &Matrix3<f64>) -> Result<(), Unphysical> {
     let mut sorted: [f64; 3] = moments.into();
     sorted.sort_by(f64::total_cmp);
     let [small, middle, largest] = sorted;
-    if small <= 0.0 {
+    // What rounding leaves of a moment that is really zero.
+    let nothing = 4.0 * f64::EPSILON * largest;
+    if largest <= 0.0 || small < -nothing {
         return Err(Unphysical::NotPositive(small));
     }
-    // What rounding leaves of a moment that is really zero.
-    if small < 4.0 * f64::EPSILON * largest {
-        return Err(Unphysical::TooThin(largest));
-    }
-    if small < 1.0 / RANGE {
-        return Err(Unphysical::OutOfRange(small));
+    if immovable != [true; 3] {
+        let least = least_free(inertia, immovable, largest);
+        if least < nothing {
+            return Err(Unphysical::TooThin(largest));
+        }
+        if least < 1.0 / RANGE {
+            return Err(Unphysical::OutOfRange(least));
+        }
     }
     if largest > (small + middle) * (1.0 + TRIANGLE_SLACK) {
         return Err(Unphysical::Triangle {
@@ -122,6 +132,18 @@ pub fn check_physical(inertia: &Matrix3<f64>) -> Result<(), Unphysical> {
         });
     }
     Ok(())
+}
+
+/// The least principal moment of what is left to turn about: of the tensor's block without the held
+/// axes, in whose place stands the `largest`, which no moment of a block exceeds.
+fn least_free(inertia: &Matrix3<f64>, immovable: [bool; 3], largest: f64) -> f64 {
+    let mut block = *inertia;
+    for axis in (0..3).filter(|&axis| immovable[axis]) {
+        block.row_mut(axis).fill(0.0);
+        block.column_mut(axis).fill(0.0);
+        block[(axis, axis)] = largest;
+    }
+    symmetric_eigen(&block).1.min()
 }
 
 #[cfg(test)]
@@ -165,5 +187,23 @@ mod tests {
             check_physical(&skew),
             Err(Unphysical::NotSymmetric(0, 1, ..))
         ));
+    }
+
+    #[test]
+    fn a_rod_is_a_body_where_it_cannot_turn_about_itself() {
+        let rod = Matrix3::from_diagonal(&Vector3::new(1.0, 0.0, 1.0));
+        let thin = Err(Unphysical::TooThin(1.0));
+        assert_eq!(check_held(&rod, [false, true, false]), Ok(()));
+        assert_eq!(check_held(&rod, [false; 3]), thin);
+        assert_eq!(check_held(&rod, [true, false, true]), thin);
+        // Askew, about an axis that is not its own, it has a moment: those that are left decide.
+        let s = 0.5_f64.sqrt();
+        let eighth = Matrix3::new(s, -s, 0.0, s, s, 0.0, 0.0, 0.0, 1.0);
+        let askew = turned(&rod, &eighth);
+        assert!(check_held(&askew, [false, true, false]).is_ok());
+        assert!(check_held(&askew, [false, false, true]).is_err());
+        // A negative moment is none, held or not.
+        let negative = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, 1.0));
+        assert!(check_held(&negative, [false, true, false]).is_err());
     }
 }

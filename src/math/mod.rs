@@ -3,6 +3,7 @@
 mod agm;
 pub mod carlson;
 pub mod dd;
+pub mod draw;
 mod eigen;
 pub mod elliptic;
 pub mod expansion;

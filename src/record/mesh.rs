@@ -1,7 +1,7 @@
 //! Surfaces as triangle meshes with normals, striped so that every turn is seen.
 
 use super::look::{self, Colour};
-use crate::mass::solids::{ProfilePoint, Surface};
+use crate::mass::solids::{Placed, ProfilePoint, Surface};
 use crate::math::symmetric_eigen;
 use crate::trace::Subject;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
@@ -39,31 +39,36 @@ fn faces(subject: &Subject, colour: Colour) -> Faces {
         shift,
         ..Faces::default()
     };
-    match surface {
-        Surface::Cuboid(extents) => faces.cuboid(extents, colour),
-        Surface::Revolution(profile) => {
-            for piece in &profile {
-                faces.revolve(piece, colour);
-            }
-        }
-    }
+    faces.surface(&surface, colour);
     faces
 }
 
 /// The distance from the centre of mass to the farthest point, m.
 pub fn radius(subject: &Subject) -> f64 {
-    let surface = subject
-        .solid
-        .as_ref()
-        .map(|solid| (solid.surface(), solid.centre().y));
-    match surface {
+    match &subject.solid {
         None => 0.5 * equivalent_box(subject).norm(),
-        Some((Surface::Cuboid(extents), _)) => 0.5 * extents.norm(),
-        Some((Surface::Revolution(profile), centre)) => profile
-            .iter()
-            .flatten()
-            .map(|point| point.at[0].hypot(point.at[1] - centre))
-            .fold(0.0, f64::max),
+        Some(solid) => reach(&solid.surface(), solid.centre()),
+    }
+}
+
+/// The distance from a point to the farthest one of a surface, m; of an ellipsoid, a bound.
+fn reach(surface: &Surface, from: Vector3<f64>) -> f64 {
+    let farthest = |distances: &mut dyn Iterator<Item = f64>| distances.fold(0.0, f64::max);
+    match surface {
+        Surface::Cuboid(extents) => (extents * 0.5 + from.abs()).norm(),
+        Surface::Ellipsoid(half) => half.max() + from.norm(),
+        Surface::Revolution(profile) => {
+            let across = from.x.hypot(from.z);
+            let distance = |p: &ProfilePoint| (p.at[0] + across).hypot(p.at[1] - from.y);
+            farthest(&mut profile.iter().flatten().map(distance))
+        }
+        Surface::Parts(parts) => {
+            let distance = |part: &Placed| {
+                let from = part.orientation.inverse() * (from - part.position);
+                reach(&part.surface, from)
+            };
+            farthest(&mut parts.iter().map(distance))
+        }
     }
 }
 
@@ -88,7 +93,9 @@ fn equivalent_box(subject: &Subject) -> Vector3<f64> {
 
 #[derive(Default)]
 struct Faces {
+    /// Where what is added lies, and how it is turned.
     shift: Vector3<f64>,
+    turn: UnitQuaternion<f64>,
     points: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
     colours: Vec<u32>,
@@ -96,12 +103,39 @@ struct Faces {
 }
 
 impl Faces {
+    fn surface(&mut self, surface: &Surface, colour: Colour) {
+        match surface {
+            Surface::Cuboid(extents) => self.cuboid(*extents, colour),
+            Surface::Revolution(profile) => {
+                for piece in profile {
+                    self.revolve(piece, Vector3::repeat(1.0), colour);
+                }
+            }
+            Surface::Ellipsoid(half) => {
+                self.revolve(&ProfilePoint::half_circle(1.0), *half, colour);
+            }
+            Surface::Parts(parts) => {
+                for part in parts {
+                    self.part(part, colour);
+                }
+            }
+        }
+    }
+
+    fn part(&mut self, part: &Placed, colour: Colour) {
+        let (shift, turn) = (self.shift, self.turn);
+        self.shift = shift + turn * part.position;
+        self.turn = turn * part.orientation;
+        self.surface(&part.surface, colour);
+        (self.shift, self.turn) = (shift, turn);
+    }
+
     /// Four corners, counter-clockwise from outside, each with its normal.
     fn quad(&mut self, corners: [(Vector3<f64>, Vector3<f64>); 4], colour: Colour) {
         let first = self.points.len() as u32;
         for (point, normal) in corners {
-            self.points
-                .push((point + self.shift).map(|x| x as f32).into());
+            let (point, normal) = (self.turn * point + self.shift, self.turn * normal);
+            self.points.push(point.map(|x| x as f32).into());
             self.normals.push(normal.map(|x| x as f32).into());
             self.colours.push(colour);
         }
@@ -109,7 +143,8 @@ impl Faces {
         self.triangles.push([first, first + 2, first + 3]);
     }
 
-    fn revolve(&mut self, profile: &[ProfilePoint], colour: Colour) {
+    /// A profile turned about the y axis and stretched by `scale` along the axes.
+    fn revolve(&mut self, profile: &[ProfilePoint], scale: Vector3<f64>, colour: Colour) {
         let light = look::lightened(colour, 0.35);
         let turned = |[radial, y]: [f64; 2], k: usize| {
             let (sin, cos) = (std::f64::consts::TAU * k as f64 / ROUND as f64).sin_cos();
@@ -122,7 +157,11 @@ impl Faces {
                 } else {
                     light
                 };
-                let corner = |p: &ProfilePoint, k| (turned(p.at, k), turned(p.normal, k));
+                // A normal shrinks where the surface is stretched.
+                let corner = |p: &ProfilePoint, k| {
+                    let normal = turned(p.normal, k).component_div(&scale);
+                    (turned(p.at, k).component_mul(&scale), normal.normalize())
+                };
                 let corners = [
                     corner(&pair[0], k),
                     corner(&pair[0], k + 1),

@@ -1,8 +1,11 @@
 //! `[[body]]`: shape, mass, inertia, pose, pivot.
 
+use super::inertia::{self, Given};
+use super::parts::{self, Filling};
 use super::problem::Problems;
+use super::swarm::{self, Spread};
 use super::table::{Node, Table, nearest};
-use crate::mass::solids::{SOLIDS, Solid, SolidKind};
+use crate::mass::solids::{NamedPoint, SOLIDS, Solid, SolidKind};
 use crate::mass::{MassProperties, UnphysicalMass};
 use crate::math::axis_angle;
 use nalgebra::{Matrix3, Quaternion, Unit, UnitQuaternion, Vector3};
@@ -30,29 +33,40 @@ pub struct Body {
 }
 
 impl Body {
-    /// A point given from the shape's origin, counted from the centre of mass instead.
-    pub(super) fn relative_to_centre(&self, point_b: Vector3<f64>) -> Vector3<f64> {
-        point_b
-            - self
-                .solid
-                .as_ref()
-                .map_or_else(Vector3::zeros, |s| s.centre())
-    }
-
-    /// The points of the body that have a name, from the shape's origin.
-    pub(super) fn points(&self) -> Vec<(&'static str, Vector3<f64>)> {
-        match &self.solid {
-            Some(solid) => solid.points(),
-            None => vec![("centre", Vector3::zeros())],
+    /// Gives the centre of mass the velocity that it has about a pivot, where there is one.
+    pub(super) fn follow_pivot(&mut self) {
+        if let Some(pivot_b) = self.pivot_b {
+            self.velocity_w = self.omega_w.cross(&(self.q_wb * -pivot_b));
         }
     }
 }
 
+/// The centre of mass from the shape's origin.
+fn centre(solid: Option<&dyn Solid>) -> Vector3<f64> {
+    solid.map_or_else(Vector3::zeros, Solid::centre)
+}
+
+/// The points that have a name, from the shape's origin.
+fn points(solid: Option<&dyn Solid>) -> Vec<NamedPoint> {
+    match solid {
+        Some(solid) => solid.points(),
+        None => vec![("centre".into(), Vector3::zeros())],
+    }
+}
+
 /// The bodies read; events refer to them by name even where one of them is wrong.
+#[derive(Default)]
 pub(super) struct Bodies {
-    pub declared: usize,
     pub valid: Vec<Option<Body>>,
-    pub index: HashMap<String, usize>,
+    /// Bodies and swarms.
+    names: HashMap<String, Named>,
+}
+
+/// What a name stands for. The bodies of a swarm have no entries of their own.
+struct Named {
+    first: usize,
+    /// Of a swarm.
+    count: Option<usize>,
 }
 
 impl Bodies {
@@ -60,56 +74,148 @@ impl Bodies {
         self.valid.into_iter().collect()
     }
 
+    /// Right or wrong.
+    pub fn declared(&self) -> usize {
+        self.valid.len()
+    }
+
     /// The index of a body named by an event.
     pub fn find(&self, node: &Node<'_>, problems: &mut Problems) -> Option<usize> {
         let name = node.str(problems)?;
-        let found = self.index.get(name).copied();
+        let found = self.index(name);
         if found.is_none() {
-            let mut names: Vec<&str> = self.index.keys().map(String::as_str).collect();
-            names.sort_unstable();
-            let remedy = nearest(name, &names);
+            let remedy = self.remedy(name);
             node.problem(format!("names no body of the scene; {remedy}"), problems);
         }
         found
     }
-}
 
-pub(super) fn read_all(tables: &[Table<'_>], gyroscopic: bool, problems: &mut Problems) -> Bodies {
-    let mut bodies = Bodies {
-        declared: tables.len(),
-        valid: Vec::new(),
-        index: HashMap::new(),
-    };
-    for (k, table) in tables.iter().enumerate() {
-        // A name that will not do still names its body to the events.
-        if let Some(node) = table.require("name", "a name for it", problems)
-            && let Some(name) = name(&node, problems)
-            && bodies.index.insert(name.to_owned(), k).is_some()
-        {
-            node.problem(
-                "is the name of an earlier body too; give each its own",
-                problems,
-            );
+    fn index(&self, name: &str) -> Option<usize> {
+        match self.names.get(name) {
+            Some(Named { first, count: None }) => Some(*first),
+            _ => self.member(name),
         }
-        if let Some(node) = table.get("immovable")
-            && gyroscopic
-        {
-            node.problem(
-                "with gyroscopic = true has no meaning yet: a held axis is the tutorial's, whose model has no gyroscopic term; use a pivot, or switch one of them off",
-                problems,
-            );
+    }
+
+    /// The index of a body of a swarm, `box_17`.
+    fn member(&self, name: &str) -> Option<usize> {
+        let (swarm, number) = name.rsplit_once('_')?;
+        let &Named { first, count } = self.names.get(swarm)?;
+        let k: usize = number.parse().ok()?;
+        // Written as the swarm writes it: 17, not 017 or +17.
+        (k < count? && number == k.to_string()).then_some(first + k)
+    }
+
+    fn remedy(&self, name: &str) -> String {
+        let swarm = name.rsplit_once('_').map_or(name, |(swarm, _)| swarm);
+        for swarm in [name, swarm] {
+            if let Some(count) = self.names.get(swarm).and_then(|named| named.count) {
+                let last = count.saturating_sub(1);
+                return format!("the swarm {swarm} has {swarm}_0 to {swarm}_{last}");
+            }
         }
-        bodies.valid.push(read(table, problems));
+        let mut names: Vec<&str> = self.names.keys().map(String::as_str).collect();
+        names.sort_unstable();
+        nearest(name, &names)
+    }
+
+    /// Enters a name; one that will not do still names its body to the events.
+    fn declare(&mut self, table: &Table<'_>, count: Option<usize>, problems: &mut Problems) {
+        let Some(node) = table.require("name", "a name for it", problems) else {
+            return;
+        };
+        let Some(name) = name(&node, problems) else {
+            return;
+        };
+        let named = Named {
+            first: self.valid.len(),
+            count,
+        };
+        if self.names.insert(name.to_owned(), named).is_some() {
+            let earlier = "is the name of an earlier body too; give each its own";
+            node.problem(earlier, problems);
+        }
+    }
+
+    fn add(&mut self, table: &Table<'_>, gyroscopic: bool, problems: &mut Problems) {
+        self.declare(table, None, problems);
+        self.valid.push(one(table, gyroscopic, problems));
         table.check_keys(problems);
     }
+
+    /// All bodies of a swarm.
+    fn add_swarm(&mut self, table: &Table<'_>, gyroscopic: bool, problems: &mut Problems) {
+        let room = swarm::MOST.saturating_sub(self.valid.len() as u64);
+        let count = swarm::count(table, room, problems);
+        let bodies = count.unwrap_or(0) as usize;
+        self.declare(table, Some(bodies), problems);
+        let like = one(table, gyroscopic, problems);
+        let spread = Spread::read(table, count, problems);
+        table.check_keys(problems);
+        let Some((mut like, spread)) = like.zip(spread) else {
+            self.valid.resize(self.valid.len() + bodies, None);
+            return;
+        };
+        let name = std::mem::take(&mut like.name);
+        let label = std::mem::take(&mut like.label);
+        let labelled = table.has("label");
+        self.valid.extend((0..bodies).map(|k| {
+            let mut body = spread.body(&like, k as u64);
+            body.name = format!("{name}_{k}");
+            body.label = match labelled {
+                true => format!("{label} {k}"),
+                false => body.name.clone(),
+            };
+            Some(body)
+        }));
+    }
+}
+
+pub(super) fn read_all(
+    tables: &[Table<'_>],
+    swarms: &[Table<'_>],
+    gyroscopic: bool,
+    problems: &mut Problems,
+) -> Bodies {
+    let mut bodies = Bodies::default();
+    for table in tables {
+        bodies.add(table, gyroscopic, problems);
+    }
+    for table in swarms {
+        bodies.add_swarm(table, gyroscopic, problems);
+    }
+    for table in tables {
+        if let Some(node) = table.get("name")
+            && let Some(name) = node.quiet_str()
+            && bodies.member(name).is_some()
+        {
+            node.problem(
+                "is the name of a body of a swarm too; give each its own",
+                problems,
+            );
+        }
+    }
     bodies
+}
+
+/// A body by its table.
+fn one(table: &Table<'_>, gyroscopic: bool, problems: &mut Problems) -> Option<Body> {
+    if let Some(node) = table.get("immovable")
+        && gyroscopic
+    {
+        node.problem(
+            "with gyroscopic = true has no meaning yet: a held axis is the tutorial's, whose model has no gyroscopic term; use a pivot, or switch one of them off",
+            problems,
+        );
+    }
+    read(table, problems)
 }
 
 /// Bytes of a name, and of a label: what a picture can show.
 const LONGEST_NAME: usize = 64;
 
 /// Names become paths of the recording, so they hold nothing that a path would read otherwise.
-fn name<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
+pub(super) fn name<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
     let name = node.str(problems)?;
     let plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
     if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(plain) {
@@ -133,22 +239,20 @@ fn label<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
 }
 
 fn read(table: &Table<'_>, problems: &mut Problems) -> Option<Body> {
-    let name = table
-        .get("name")
-        .and_then(|node| node.str(&mut Problems::new("", "")));
+    let name = table.get("name").and_then(|node| node.quiet_str());
     let label = table.get("label").and_then(|node| label(&node, problems));
-    let shape = table.get("shape").map(|node| solid(&node, problems));
+    let filling = Filling::of(table);
+    let shape = table
+        .get("shape")
+        .map(|node| solid(&node, Some(filling), problems));
     let solid: Option<Arc<dyn Solid>> = shape.as_ref().and_then(Option::clone);
-    let properties = properties(table, shape.as_ref(), problems);
+    let properties = properties(table, Shape(shape.as_ref()), problems);
     let position_w = vector(table, "position", "m", problems);
     let velocity = table.get("velocity");
     let pivot = table.get("pivot");
     let velocity_w = velocity.as_ref().map(|node| node.vector("m/s", problems));
     let omega_w = vector(table, "angular_velocity", "rad/s", problems);
-    let q_wb = match table.get("orientation") {
-        None => Some(UnitQuaternion::identity()),
-        Some(node) => orientation(node, problems),
-    };
+    let q_wb = orientation(table, problems);
     let mut body = Body {
         label: label.or(name).unwrap_or_default().to_owned(),
         name: name.unwrap_or_default().to_owned(),
@@ -175,12 +279,12 @@ fn read(table: &Table<'_>, problems: &mut Problems) -> Option<Body> {
                 problems,
             );
         }
-        body.velocity_w = body.omega_w.cross(&(body.q_wb * -pivot));
+        body.follow_pivot();
     }
     Some(body)
 }
 
-fn vector(
+pub(super) fn vector(
     table: &Table<'_>,
     key: &'static str,
     unit: &str,
@@ -195,18 +299,26 @@ fn vector(
 /// A point of the body, by name or by three numbers in body axes from the shape's origin;
 /// returned from the centre of mass.
 pub(super) fn point(node: &Node<'_>, body: &Body, problems: &mut Problems) -> Option<Vector3<f64>> {
+    point_of(node, body.solid.as_deref(), problems)
+}
+
+pub(super) fn point_of(
+    node: &Node<'_>,
+    solid: Option<&dyn Solid>,
+    problems: &mut Problems,
+) -> Option<Vector3<f64>> {
     if let Some(("body", inner)) = node.only_entry() {
-        return point(&inner, body, problems);
+        return point_of(&inner, solid, problems);
     }
     if !node.is_text() {
-        return Some(body.relative_to_centre(node.vector("m", problems)?));
+        return Some(node.vector("m", problems)? - centre(solid));
     }
     let name = node.str(problems)?;
-    let points = body.points();
+    let points = points(solid);
     match points.iter().find(|(known, _)| *known == name) {
-        Some(&(_, point)) => Some(body.relative_to_centre(point)),
+        Some((_, point)) => Some(point - centre(solid)),
         None => {
-            let names: Vec<&str> = points.iter().map(|(name, _)| *name).collect();
+            let names: Vec<&str> = points.iter().map(|(name, _)| &**name).collect();
             let message = format!(
                 "is no named point of this body ({}); a point by numbers is {{ body = [x, y, z] }} in its axes, m",
                 names.join(", ")
@@ -217,7 +329,21 @@ pub(super) fn point(node: &Node<'_>, body: &Body, problems: &mut Problems) -> Op
     }
 }
 
-fn solid(node: &Node<'_>, problems: &mut Problems) -> Option<Arc<dyn Solid>> {
+/// A shape. `filling` is what its parts are made of, where it may have parts.
+pub(super) fn solid(
+    node: &Node<'_>,
+    filling: Option<Filling<'_, '_>>,
+    problems: &mut Problems,
+) -> Option<Arc<dyn Solid>> {
+    if let Some(("parts", inner)) = node.only_entry() {
+        if filling.is_none() {
+            node.problem(
+                "holds parts of a part; put them all into one list",
+                problems,
+            );
+        }
+        return parts::read(&inner, filling?, problems);
+    }
     let names: Vec<&str> = SOLIDS.iter().map(|kind| kind.name).collect();
     let Some((name, name_span, inner)) = node.choice() else {
         let remedy = format!(
@@ -267,15 +393,35 @@ fn parameters(kind: &SolidKind) -> String {
     names.join(", ")
 }
 
+/// A body's shape: none, one that is wrong, or a solid.
+#[derive(Clone, Copy)]
+pub(super) struct Shape<'s>(Option<&'s Option<Arc<dyn Solid>>>);
+
+impl<'s> Shape<'s> {
+    /// Whether there is a solid; nothing where the shape is wrong.
+    pub fn known(self) -> Option<Option<&'s dyn Solid>> {
+        match self.0 {
+            None => Some(None),
+            Some(solid) => solid.as_deref().map(Some),
+        }
+    }
+
+    fn solid(self) -> Option<&'s dyn Solid> {
+        self.known().flatten()
+    }
+}
+
 /// Mass or density, inertia given or the shape's, axes that nothing turns.
 fn properties(
     table: &Table<'_>,
-    shape: Option<&Option<Arc<dyn Solid>>>,
+    shape: Shape<'_>,
     problems: &mut Problems,
 ) -> Option<MassProperties> {
     let (mass, density) = (table.get("mass"), table.get("density"));
     let explicit = table.get("inertia");
-    let inertia = explicit.as_ref().map(|node| inertia(node, problems));
+    let given = explicit
+        .as_ref()
+        .map(|node| inertia::read(node, shape, problems));
     let immovable = immovable(table, problems);
     if mass.as_ref().is_some_and(Node::is_text) {
         let node = mass?;
@@ -299,7 +445,7 @@ fn properties(
         }
         return Some(MassProperties::infinite());
     }
-    let solid = shape.and_then(Option::as_ref);
+    let own_mass = shape.solid().and_then(Solid::own_mass);
     let mass_kg = match (&mass, &density) {
         (Some(_), Some(node)) => {
             node.problem(
@@ -309,7 +455,10 @@ fn properties(
             None
         }
         (Some(node), None) => node.positive("kg", problems),
+        (None, _) if own_mass.is_some() => own_mass,
         (None, Some(node)) => mass_of(node, shape, problems),
+        // What its parts weigh is known once they are right.
+        (None, None) if shape.known().is_none() && has_parts(table) => None,
         (None, None) => {
             let message = format!(
                 "{} lacks a mass; add mass = 1.0 (kg), density (kg/m³), or mass = \"infinite\"",
@@ -319,12 +468,17 @@ fn properties(
             None
         }
     };
-    let tensor = match (inertia, shape) {
-        (Some(tensor), _) => tensor,
-        (None, Some(_)) => mass_kg
-            .zip(solid)
-            .map(|(mass, solid)| Matrix3::from_diagonal(&solid.moments(mass))),
-        (None, None) => {
+    let given = match given {
+        // It is there and wrong.
+        Some(None) => return None,
+        Some(given) => given,
+        None => None,
+    };
+    let tensor = match (&given, shape.known()) {
+        (Some(given), _) => mass_kg.map(|mass| given.about_centre(mass)),
+        (None, None) => None,
+        (None, Some(Some(solid))) => mass_kg.map(|mass| solid.inertia(mass)),
+        (None, Some(None)) => {
             let message = format!(
                 "{} has neither a shape nor an inertia; add one of them",
                 table.name()
@@ -338,9 +492,14 @@ fn properties(
         mass_kg?,
         tensor?,
         immovable?,
-        explicit.as_ref(),
+        explicit.as_ref().zip(given.as_ref()),
         problems,
     )
+}
+
+fn has_parts(table: &Table<'_>) -> bool {
+    let shape = table.get("shape");
+    shape.is_some_and(|node| matches!(node.only_entry(), Some(("parts", _))))
 }
 
 fn checked(
@@ -348,13 +507,13 @@ fn checked(
     mass: f64,
     tensor: Matrix3<f64>,
     immovable: [bool; 3],
-    explicit: Option<&Node<'_>>,
+    explicit: Option<(&Node<'_>, &Given)>,
     problems: &mut Problems,
 ) -> Option<MassProperties> {
     match (MassProperties::new(mass, tensor, immovable), explicit) {
         (Ok(properties), _) => Some(properties),
-        (Err(UnphysicalMass::Inertia(why)), Some(node)) => {
-            node.problem(format!("cannot belong to a rigid body: {why}"), problems);
+        (Err(UnphysicalMass::Inertia(why)), Some((node, given))) => {
+            given.refuse(node, why, problems);
             None
         }
         (Err(why), _) => {
@@ -366,40 +525,24 @@ fn checked(
     }
 }
 
-fn mass_of(
-    density: &Node<'_>,
-    shape: Option<&Option<Arc<dyn Solid>>>,
-    problems: &mut Problems,
-) -> Option<f64> {
+fn mass_of(density: &Node<'_>, shape: Shape<'_>, problems: &mut Problems) -> Option<f64> {
     let value = density.positive("kg/m³", problems)?;
-    match shape {
+    match shape.known()? {
         None => {
             density.problem("needs a shape to fill; add one, or give the mass", problems);
             None
         }
-        Some(None) => None,
-        Some(Some(solid)) => match solid.volume() {
+        Some(solid) => match solid.volume() {
             Some(volume) => Some(value * volume),
             None => {
                 density.problem(
-                    "needs a volume, and a thin shell has none; give the mass",
+                    "needs a volume, and what is thin has none; give the mass",
                     problems,
                 );
                 None
             }
         },
     }
-}
-
-fn inertia(node: &Node<'_>, problems: &mut Problems) -> Option<Matrix3<f64>> {
-    if node.is_array_of_arrays() {
-        return node.matrix("kg m²", problems);
-    }
-    if node.array_length() != Some(3) {
-        node.problem("must be three moments or three rows of three (kg m², about the centre of mass, body axes)", problems);
-        return None;
-    }
-    Some(Matrix3::from_diagonal(&node.vector("kg m²", problems)?))
 }
 
 fn immovable(table: &Table<'_>, problems: &mut Problems) -> Option<[bool; 3]> {
@@ -423,7 +566,14 @@ fn immovable(table: &Table<'_>, problems: &mut Problems) -> Option<[bool; 3]> {
     Some(held)
 }
 
-fn orientation(node: Node<'_>, problems: &mut Problems) -> Option<UnitQuaternion<f64>> {
+/// Of the body or the part that the table describes.
+pub(super) fn orientation(
+    table: &Table<'_>,
+    problems: &mut Problems,
+) -> Option<UnitQuaternion<f64>> {
+    let Some(node) = table.get("orientation") else {
+        return Some(UnitQuaternion::identity());
+    };
     if !node.is_table() {
         let [x, y, z, w] = node.numbers::<4>("a quaternion x, y, z, w, body to world", problems)?;
         let largest = [x, y, z, w]

@@ -5,9 +5,12 @@
 
 mod body;
 mod event;
+mod inertia;
 mod pairing;
+mod parts;
 mod problem;
 mod read;
+mod swarm;
 mod table;
 
 pub use body::Body;

@@ -45,7 +45,23 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
         return Vec::new();
     };
     let mut found = Vec::new();
+    // By body, once and for all: both may be many.
+    let mut events: Vec<usize> = (0..scene.events.len()).collect();
+    events.sort_by_key(|&index| scene.events[index].body);
+    let mut events = events.as_slice();
+    // Of bodies alike one after another, as a swarm has them, what is true of one is true of all.
+    let mut before: Option<(&Body, bool)> = None;
     for (k, body) in scene.bodies.iter().enumerate() {
+        let own = events.partition_point(|&index| scene.events[index].body <= k);
+        let (own, rest) = events.split_at(own);
+        events = rest;
+        let known = before.filter(|(other, _)| are_alike(other, body));
+        if let Some((_, refused)) = known
+            && (refused || own.is_empty())
+        {
+            continue;
+        }
+        before = Some((body, false));
         let (inertial, q_bp) = Inertial::new(&body.properties, body.pivot_b);
         let mut block = InertialBlock::default();
         block.set(0, inertial);
@@ -53,10 +69,11 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
         if let Some(refusal) = refuses(lasting(scene)) {
             let why = format!("{}: {refusal}", body.name);
             found.push(Unpaired { why, event: None });
+            before = Some((body, true));
             continue;
         }
-        let events = scene.events.iter().enumerate();
-        for (index, event) in events.filter(|(_, event)| event.body == k) {
+        for &index in own {
+            let event = &scene.events[index];
             let mut load = lasting(scene);
             if let Some(effect) = event.effect(0, &inertial, q_bp.inverse()) {
                 load.push(effect);
@@ -71,6 +88,11 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
         }
     }
     found
+}
+
+/// Whether effects that act on every body act on both alike.
+fn are_alike(a: &Body, b: &Body) -> bool {
+    a.properties == b.properties && a.pivot_b == b.pivot_b
 }
 
 fn reason(body: &Body, event: &Event, why: &str) -> String {

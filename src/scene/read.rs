@@ -61,13 +61,15 @@ fn read(top: &Table<'_>, name: &str, source: &str, problems: &mut Problems) -> O
         no_factor_per_step(top, &effects, problems);
     }
     let gyroscopic = effects.iter().any(|(name, _)| *name == "gyroscopic");
-    let bodies = body::read_all(&top.tables("body", problems), gyroscopic, problems);
-    if bodies.declared == 0 && !top.has("body") {
+    let tables = top.tables("body", problems);
+    let swarms = top.tables("swarm", problems);
+    let bodies = body::read_all(&tables, &swarms, gyroscopic, problems);
+    if bodies.declared() == 0 && !top.has("body") && !top.has("swarm") {
         problems.add(top.span(), "the scene has no body; add a [[body]]");
     }
     let events = top.tables("event", problems);
     if let (Some(duration), Some(step), false) = (duration, step, rate_chosen) {
-        let rows = duration / step * bodies.declared as f64;
+        let rows = duration / step * bodies.declared() as f64;
         if rows > MOST_ROWS {
             let message = format!(
                 "the state at every step would be {rows:.1e} rows, some {:.0} GB; take a larger step, or say [record] state = 1000 (a second), or state = \"every\" if it is meant",

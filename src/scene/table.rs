@@ -19,6 +19,7 @@ pub(super) struct Table<'d> {
 }
 
 /// The value of a key.
+#[derive(Clone)]
 pub(super) struct Node<'d> {
     pub key: &'static str,
     pub span: Range<usize>,
@@ -191,6 +192,11 @@ impl<'d> Node<'d> {
         text
     }
 
+    /// The text, if it is one; what else it is says somebody else.
+    pub fn quiet_str(&self) -> Option<&'d str> {
+        self.value.as_str()
+    }
+
     pub fn boolean(&self, problems: &mut Problems) -> Option<bool> {
         let value = self.value.as_bool();
         if value.is_none() {
@@ -284,6 +290,39 @@ impl<'d> Node<'d> {
             value: item.get_ref(),
         };
         Some(texts.iter().map(node).collect())
+    }
+
+    /// A whole number from `least` to `most`.
+    pub fn whole(&self, least: u64, most: u64, problems: &mut Problems) -> Option<u64> {
+        let number = self.number("a whole number", problems)?;
+        // Up to 2⁵³ an f64 is the number that was written.
+        let is_whole = number.fract() == 0.0 && self.value.is_integer();
+        if !is_whole || number < least as f64 || number > most as f64 {
+            self.problem(
+                format!("is not a whole number from {least} to {most}"),
+                problems,
+            );
+            return None;
+        }
+        Some(number as u64)
+    }
+
+    /// A list of tables, each called `name` and its number, from 1.
+    pub fn tables(&self, name: &str, problems: &mut Problems) -> Option<Vec<Table<'d>>> {
+        let Some(array) = self.value.as_array() else {
+            self.wrong("a list of tables", problems);
+            return None;
+        };
+        let mut tables = Vec::with_capacity(array.len());
+        for (k, item) in (1..).zip(array.iter()) {
+            let Some(entries) = item.get_ref().as_table() else {
+                let what = with_article(item.get_ref().type_str());
+                problems.add(&item.span(), format!("{name} is {what}, not a table"));
+                return None;
+            };
+            tables.push(Table::new(entries, item.span(), format!("{name} ({k})")));
+        }
+        Some(tables)
     }
 
     pub fn table(self, name: String, problems: &mut Problems) -> Option<Table<'d>> {

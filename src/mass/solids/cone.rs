@@ -4,7 +4,7 @@
 //! `I_x = I_z = 3/80 m (4r² + h²)`; the parallel axis gives `3/20 m r² + 1/10 m h²` about the base
 //! centre and `3/20 m r² + 3/5 m h²` about the apex.
 
-use super::{ProfilePoint, Solid, SolidKind, Surface, length, positive};
+use super::{NamedPoint, ProfilePoint, Solid, SolidKind, Surface, along_y, length, positive};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -31,7 +31,7 @@ impl Solid for Cone {
     fn moments(&self, mass: f64) -> Vector3<f64> {
         let (r2, h2) = (self.radius * self.radius, self.height * self.height);
         let across = 3.0 / 80.0 * mass * (4.0 * r2 + h2);
-        Vector3::new(across, 0.3 * mass * r2, across)
+        along_y(0.3 * mass * r2, across)
     }
 
     fn volume(&self) -> Option<f64> {
@@ -42,11 +42,16 @@ impl Solid for Cone {
         Vector3::y() * (0.25 * self.height)
     }
 
-    fn points(&self) -> Vec<(&'static str, Vector3<f64>)> {
+    fn contains(&self, p: Vector3<f64>) -> bool {
+        let radius = self.radius * (1.0 - p.y / self.height);
+        p.y >= 0.0 && radius >= 0.0 && p.x * p.x + p.z * p.z <= radius * radius
+    }
+
+    fn points(&self) -> Vec<NamedPoint> {
         vec![
-            ("centre", self.centre()),
-            ("base", Vector3::zeros()),
-            ("apex", Vector3::y() * self.height),
+            ("centre".into(), self.centre()),
+            ("base".into(), Vector3::zeros()),
+            ("apex".into(), Vector3::y() * self.height),
         ]
     }
 

@@ -1,6 +1,6 @@
 //! The cuboid of full extents x, y, z: `I = m/12 (y²+z², x²+z², x²+y²)`.
 
-use super::{Solid, SolidKind, Surface, length, positive};
+use super::{NamedPoint, Solid, SolidKind, Surface, ends, length, positive};
 use nalgebra::Vector3;
 
 pub const KIND: SolidKind = SolidKind {
@@ -28,6 +28,14 @@ impl Solid for Cuboid {
 
     fn volume(&self) -> Option<f64> {
         Some(self.extents.product())
+    }
+
+    fn contains(&self, p: Vector3<f64>) -> bool {
+        (0..3).all(|k| p[k].abs() <= 0.5 * self.extents[k])
+    }
+
+    fn points(&self) -> Vec<NamedPoint> {
+        ends(0.5 * self.extents.y)
     }
 
     fn surface(&self) -> Surface {

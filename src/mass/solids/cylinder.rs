@@ -1,6 +1,6 @@
 //! The cylinder of radius r and height h along y: `I_y = ½ m r²`, `I_x = I_z = m/12 (3r² + h²)`.
 
-use super::{ProfilePoint, Solid, SolidKind, Surface, length, positive};
+use super::{NamedPoint, ProfilePoint, Solid, SolidKind, Surface, along_y, ends, length, positive};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -26,25 +26,31 @@ struct Cylinder {
 impl Solid for Cylinder {
     fn moments(&self, mass: f64) -> Vector3<f64> {
         let (r2, h2) = (self.radius * self.radius, self.height * self.height);
-        let across = mass / 12.0 * (3.0 * r2 + h2);
-        Vector3::new(across, 0.5 * mass * r2, across)
+        along_y(0.5 * mass * r2, mass / 12.0 * (3.0 * r2 + h2))
     }
 
     fn volume(&self) -> Option<f64> {
         Some(PI * self.radius * self.radius * self.height)
     }
 
-    fn points(&self) -> Vec<(&'static str, Vector3<f64>)> {
-        let up = Vector3::y() * (0.5 * self.height);
-        vec![("centre", Vector3::zeros()), ("top", up), ("bottom", -up)]
+    fn contains(&self, p: Vector3<f64>) -> bool {
+        p.x * p.x + p.z * p.z <= self.radius * self.radius && p.y.abs() <= 0.5 * self.height
+    }
+
+    fn points(&self) -> Vec<NamedPoint> {
+        ends(0.5 * self.height)
     }
 
     fn surface(&self) -> Surface {
-        let (r, y) = (self.radius, 0.5 * self.height);
-        Surface::Revolution(vec![
-            ProfilePoint::segment([0.0, y], [r, y]),
-            ProfilePoint::segment([r, y], [r, -y]),
-            ProfilePoint::segment([r, -y], [0.0, -y]),
-        ])
+        profile(self.radius, 0.5 * self.height)
     }
+}
+
+/// Of radius r, from y to -y.
+pub fn profile(r: f64, y: f64) -> Surface {
+    Surface::Revolution(vec![
+        ProfilePoint::segment([0.0, y], [r, y]),
+        ProfilePoint::segment([r, y], [r, -y]),
+        ProfilePoint::segment([r, -y], [0.0, -y]),
+    ])
 }

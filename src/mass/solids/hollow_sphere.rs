@@ -1,7 +1,9 @@
 //! The hollow sphere, outer radius b, inner radius a: `I = 2/5 m (b⁵ - a⁵)/(b³ - a³)`;
 //! its limit a → b, the thin shell: `I = 2/3 m r²`.
 
-use super::{Parameter, ProfilePoint, Solid, SolidKind, Surface, length, positive};
+use super::{
+    NamedPoint, Parameter, ProfilePoint, Solid, SolidKind, Surface, ends, length, positive,
+};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -11,11 +13,11 @@ pub const KIND: SolidKind = SolidKind {
         length("radius"),
         // Absent: NaN, which stands for a shell without thickness.
         Parameter {
-            name: "inner",
+            name: "inner_radius",
             default: Some(f64::NAN),
         },
     ],
-    about: "I = 2/5 m (b⁵ - a⁵)/(b³ - a³), b radius, a inner; without inner a thin shell, 2/3 m r²",
+    about: "I = 2/5 m (b⁵ - a⁵)/(b³ - a³), b radius, a inner_radius; without it a thin shell, 2/3 m r²",
     make: |p| {
         let (radius, inner) = (p[0], p[1]);
         positive(&[("radius", radius)])?;
@@ -27,7 +29,7 @@ pub const KIND: SolidKind = SolidKind {
         }
         if !(0.0..radius).contains(&inner) {
             return Err(format!(
-                "inner = {inner} m must lie from 0 to below the radius, {radius} m; for a thin \
+                "inner_radius = {inner} m must lie from 0 to below the radius, {radius} m; for a thin \
                  shell leave it out"
             ));
         }
@@ -57,7 +59,18 @@ impl Solid for HollowSphere {
 
     fn volume(&self) -> Option<f64> {
         let a = self.inner?;
-        Some(4.0 / 3.0 * PI * (self.radius * self.radius * self.radius - a * a * a))
+        // b³ - a³ by its factors, so that nothing cancels in a thin wall.
+        let b = self.radius;
+        Some(4.0 / 3.0 * PI * (b - a) * (b * b + b * a + a * a))
+    }
+
+    fn contains(&self, p: Vector3<f64>) -> bool {
+        let inside = |a: f64| (a * a..=self.radius * self.radius).contains(&p.norm_squared());
+        self.inner.is_some_and(inside)
+    }
+
+    fn points(&self) -> Vec<NamedPoint> {
+        ends(self.radius)
     }
 
     fn surface(&self) -> Surface {

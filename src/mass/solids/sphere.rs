@@ -1,6 +1,6 @@
 //! The solid sphere: `I = 2/5 m r²` about every axis.
 
-use super::{ProfilePoint, Solid, SolidKind, Surface, length, positive};
+use super::{NamedPoint, ProfilePoint, Solid, SolidKind, Surface, ends, length, positive};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -26,6 +26,14 @@ impl Solid for Sphere {
 
     fn volume(&self) -> Option<f64> {
         Some(4.0 / 3.0 * PI * self.radius * self.radius * self.radius)
+    }
+
+    fn contains(&self, p: Vector3<f64>) -> bool {
+        p.norm_squared() <= self.radius * self.radius
+    }
+
+    fn points(&self) -> Vec<NamedPoint> {
+        ends(self.radius)
     }
 
     fn surface(&self) -> Surface {
