@@ -7,6 +7,7 @@ mod by_hand;
 mod measure;
 mod precision;
 mod problems;
+mod read;
 mod report;
 mod threads;
 mod throughput;
@@ -25,6 +26,7 @@ const SECTIONS: &[(&str, Section)] = &[
     ("weights", weight::weights),
     ("exact", precision::exact),
     ("precision", precision::precision),
+    ("read", read::read),
 ];
 
 fn main() {
