@@ -1,6 +1,7 @@
-//! Level 1: from solids to mass, centre of mass and inertia.
+//! Level 1: from solids, meshes and descriptions to mass, centre of mass and inertia.
 
 mod compound;
+pub mod mesh;
 mod properties;
 pub mod solids;
 pub mod tensor;

@@ -1,7 +1,7 @@
 //! Surfaces as triangle meshes with normals, striped so that every turn is seen.
 
 use super::look::{self, Colour};
-use crate::mass::solids::{Placed, ProfilePoint, Surface};
+use crate::mass::solids::{Placed, ProfilePoint, Surface, Triangles};
 use crate::math::symmetric_eigen;
 use crate::trace::Subject;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
@@ -62,6 +62,10 @@ fn reach(surface: &Surface, from: Vector3<f64>) -> f64 {
             let distance = |p: &ProfilePoint| (p.at[0] + across).hypot(p.at[1] - from.y);
             farthest(&mut profile.iter().flatten().map(distance))
         }
+        Surface::Mesh(triangles) => {
+            let distance = |point: &Vector3<f64>| (point - from).norm();
+            farthest(&mut triangles.points.iter().map(distance))
+        }
         Surface::Parts(parts) => {
             let distance = |part: &Placed| {
                 let from = part.orientation.inverse() * (from - part.position);
@@ -114,6 +118,7 @@ impl Faces {
             Surface::Ellipsoid(half) => {
                 self.revolve(&ProfilePoint::half_circle(1.0), *half, colour);
             }
+            Surface::Mesh(triangles) => self.flat(triangles, colour),
             Surface::Parts(parts) => {
                 for part in parts {
                     self.part(part, colour);
@@ -141,6 +146,29 @@ impl Faces {
         }
         self.triangles.push([first, first + 1, first + 2]);
         self.triangles.push([first, first + 2, first + 3]);
+    }
+
+    /// Each face in the shade of the side it looks to, as on a cuboid: a turn is seen on a round mesh too.
+    fn flat(&mut self, triangles: &Triangles, colour: Colour) {
+        for corners in triangles.corners() {
+            let [a, b, c] = corners;
+            // Three corners on a line are nothing to see.
+            let Some(normal) = (b - a).cross(&(c - a)).try_normalize(0.0) else {
+                continue;
+            };
+            let axis = normal.iamax();
+            let side = if normal[axis] > 0.0 { 0.3 } else { 0.0 };
+            let colour = look::lightened(colour, side + 0.1 * axis as f32);
+            let first = self.points.len() as u32;
+            let normal = self.turn * normal;
+            for point in corners {
+                let point = self.turn * point + self.shift;
+                self.points.push(point.map(|x| x as f32).into());
+                self.normals.push(normal.map(|x| x as f32).into());
+                self.colours.push(colour);
+            }
+            self.triangles.push([first, first + 1, first + 2]);
+        }
     }
 
     /// A profile turned about the y axis and stretched by `scale` along the axes.

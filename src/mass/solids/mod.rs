@@ -17,7 +17,10 @@ mod hollow_sphere;
 mod rod;
 mod sphere;
 mod torus;
+mod triangles;
 mod tube;
+
+pub use triangles::Triangles;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use std::borrow::Cow;
@@ -28,8 +31,8 @@ pub trait Solid: Debug + Send + Sync {
     /// Moments about the solid's axes through its centre of mass, kg m².
     fn moments(&self, mass: f64) -> Vector3<f64>;
 
-    /// The tensor about the centre of mass, in the solid's axes, kg m². Those of a solid of the table
-    /// [`SOLIDS`] are principal.
+    /// The tensor about the centre of mass, along the solid's axes, kg m²: its moments, unless its
+    /// principal axes are others. Those of a solid of the table [`SOLIDS`] are principal.
     fn inertia(&self, mass: f64) -> Matrix3<f64> {
         Matrix3::from_diagonal(&self.moments(mass))
     }
@@ -70,6 +73,8 @@ pub enum Surface {
     Revolution(Vec<Vec<ProfilePoint>>),
     /// An ellipsoid of these half axes about the origin, m.
     Ellipsoid(Vector3<f64>),
+    /// Flat faces.
+    Mesh(Triangles),
     /// Several, each in its place.
     Parts(Vec<Placed>),
 }
