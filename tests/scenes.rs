@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use std::path::Path;
 use torquescope::scene::Scene;
 use torquescope::sim::Simulation;
-use torquescope::trace::Sample;
+use torquescope::trace::{Instant, Sample};
 
 #[track_caller]
 fn near(got: Vector3<f64>, want: [f64; 3], bound: f64) {
@@ -124,7 +124,39 @@ fn every_shipped_scene_runs_and_says_what_to_look_at() {
         assert!(memory.notes.len() >= happens, "{}", scene.name);
         seen += 1;
     }
-    assert!(seen >= 13);
+    assert!(seen >= 14);
+}
+
+/// A mesh's principal axes are not asked for anywhere: the whole tensor goes in.
+#[test]
+fn the_t_handle_turns_over_when_jacobi_says() {
+    let scene = load("t_handle.toml");
+    // Steel times the volume of a box and three prisms (tests/oracles/t_handle.csv), cm³.
+    let mass = scene.bodies[0].properties.mass().unwrap();
+    assert!((mass - 7850.0 * 48.784185705290186e-6).abs() < 1e-14);
+    let [mesh] = &scene.enclosures[..] else {
+        panic!("one file");
+    };
+    assert_eq!(mesh.name, "t_handle.obj");
+    let (_, _, memory) = run(&scene);
+    let spin = |(at, _, sample): &(Instant, usize, Sample)| {
+        (
+            at.time,
+            (sample.motion.q_wb.inverse() * sample.motion.omega_w).y,
+        )
+    };
+    let spins: Vec<(f64, f64)> = memory.samples.iter().map(spin).collect();
+    let zero = |pair: &[(f64, f64)]| {
+        let ((t0, w0), (t1, w1)) = (pair[0], pair[1]);
+        (w0 * w1 < 0.0).then(|| t0 + (t1 - t0) * w0 / (w0 - w1))
+    };
+    let flips: Vec<f64> = spins.windows(2).filter_map(zero).collect();
+    assert_eq!(flips.len(), 4, "{flips:?}");
+    for pair in flips.windows(2) {
+        // ω_2 ~ sn(ν t, k) is zero every 2 K(k)/ν = 1.640838 s (mpmath, from the csv's moments). Interpolated
+        // over 1/60 s where sn has no curvature: off by (ν/60)³/(9√3 ν) = 4e-5 s at most, at either end.
+        assert!((pair[1] - pair[0] - 1.640_838).abs() < 8e-5, "{flips:?}");
+    }
 }
 
 #[test]

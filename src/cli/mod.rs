@@ -7,6 +7,7 @@ mod check;
 mod cost;
 mod explain;
 mod lists;
+mod mass;
 mod print;
 mod run;
 mod scenes;
@@ -41,6 +42,7 @@ enum Verb {
     View(view::Arguments),
     Check(check::Arguments),
     Scenes(scenes::Arguments),
+    Mass(mass::Arguments),
     /// List the integration methods: order, what they preserve, citation.
     Methods(lists::MethodArguments),
     /// List the effects that a scene's [effects] can name.
@@ -60,6 +62,7 @@ pub fn main() -> ExitCode {
         Verb::View(arguments) => view::run(&arguments),
         Verb::Check(arguments) => check::run(&arguments),
         Verb::Scenes(arguments) => scenes::run(&arguments),
+        Verb::Mass(arguments) => mass::run(&arguments),
         Verb::Methods(arguments) => lists::methods(&arguments),
         Verb::Effects(arguments) => lists::effects(&arguments),
         Verb::Streams(arguments) => lists::streams(&arguments),

@@ -1,6 +1,7 @@
 //! Level 1: from solids, meshes and descriptions to mass, centre of mass and inertia.
 
 mod compound;
+pub mod links;
 pub mod mesh;
 mod properties;
 pub mod solids;

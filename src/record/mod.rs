@@ -9,6 +9,7 @@ mod blueprint;
 mod columns;
 mod heading;
 mod layout;
+mod links;
 mod look;
 mod mesh;
 mod page;
@@ -21,6 +22,7 @@ mod sources;
 mod viewer;
 
 pub use heading::Heading;
+pub use links::links;
 pub use recorder::{Recorder, Summary};
 pub use viewer::{Assets, native_version_line};
 

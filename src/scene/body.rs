@@ -1,6 +1,8 @@
 //! `[[body]]`: shape, mass, inertia, pose, pivot.
 
+use super::files::Files;
 use super::inertia::{self, Given};
+use super::inertial;
 use super::parts::{self, Filling};
 use super::problem::Problems;
 use super::swarm::{self, Spread};
@@ -137,19 +139,19 @@ impl Bodies {
         }
     }
 
-    fn add(&mut self, table: &Table<'_>, gyroscopic: bool, problems: &mut Problems) {
+    fn add(&mut self, table: &Table<'_>, context: Context<'_>, problems: &mut Problems) {
         self.declare(table, None, problems);
-        self.valid.push(one(table, gyroscopic, problems));
+        self.valid.push(one(table, context, problems));
         table.check_keys(problems);
     }
 
     /// All bodies of a swarm.
-    fn add_swarm(&mut self, table: &Table<'_>, gyroscopic: bool, problems: &mut Problems) {
+    fn add_swarm(&mut self, table: &Table<'_>, context: Context<'_>, problems: &mut Problems) {
         let room = swarm::MOST.saturating_sub(self.valid.len() as u64);
         let count = swarm::count(table, room, problems);
         let bodies = count.unwrap_or(0) as usize;
         self.declare(table, Some(bodies), problems);
-        let like = one(table, gyroscopic, problems);
+        let like = one(table, context, problems);
         let spread = Spread::read(table, count, problems);
         table.check_keys(problems);
         let Some((mut like, spread)) = like.zip(spread) else {
@@ -171,18 +173,26 @@ impl Bodies {
     }
 }
 
+/// What a body is read with.
+#[derive(Clone, Copy)]
+pub(super) struct Context<'a> {
+    /// Whether the scene has the gyroscopic term.
+    pub gyroscopic: bool,
+    pub files: &'a Files<'a>,
+}
+
 pub(super) fn read_all(
     tables: &[Table<'_>],
     swarms: &[Table<'_>],
-    gyroscopic: bool,
+    context: Context<'_>,
     problems: &mut Problems,
 ) -> Bodies {
     let mut bodies = Bodies::default();
     for table in tables {
-        bodies.add(table, gyroscopic, problems);
+        bodies.add(table, context, problems);
     }
     for table in swarms {
-        bodies.add_swarm(table, gyroscopic, problems);
+        bodies.add_swarm(table, context, problems);
     }
     for table in tables {
         if let Some(node) = table.get("name")
@@ -199,16 +209,16 @@ pub(super) fn read_all(
 }
 
 /// A body by its table.
-fn one(table: &Table<'_>, gyroscopic: bool, problems: &mut Problems) -> Option<Body> {
+fn one(table: &Table<'_>, context: Context<'_>, problems: &mut Problems) -> Option<Body> {
     if let Some(node) = table.get("immovable")
-        && gyroscopic
+        && context.gyroscopic
     {
         node.problem(
             "with gyroscopic = true has no meaning yet: a held axis is the tutorial's, whose model has no gyroscopic term; use a pivot, or switch one of them off",
             problems,
         );
     }
-    read(table, problems)
+    read(table, context.files, problems)
 }
 
 /// Bytes of a name, and of a label: what a picture can show.
@@ -238,15 +248,25 @@ fn label<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
     Some(label)
 }
 
-fn read(table: &Table<'_>, problems: &mut Problems) -> Option<Body> {
+fn read(table: &Table<'_>, files: &Files<'_>, problems: &mut Problems) -> Option<Body> {
     let name = table.get("name").and_then(|node| node.quiet_str());
     let label = table.get("label").and_then(|node| label(&node, problems));
-    let filling = Filling::of(table);
-    let shape = table
-        .get("shape")
-        .map(|node| solid(&node, Some(filling), problems));
-    let solid: Option<Arc<dyn Solid>> = shape.as_ref().and_then(Option::clone);
-    let properties = properties(table, Shape(shape.as_ref()), problems);
+    let (solid, properties) = match table.get("inertial") {
+        Some(node) => {
+            let immovable = immovable(table, problems);
+            let described = inertial::read(node, table, immovable, files, problems);
+            let (properties, lump) = described.unzip();
+            (lump.map(|lump| lump as Arc<dyn Solid>), properties)
+        }
+        None => {
+            let filling = Filling::of(table);
+            let shape = table
+                .get("shape")
+                .map(|node| solid(&node, Some(filling), files, problems));
+            let properties = properties(table, Shape(shape.as_ref()), problems);
+            (shape.flatten(), properties)
+        }
+    };
     let position_w = vector(table, "position", "m", problems);
     let velocity = table.get("velocity");
     let pivot = table.get("pivot");
@@ -333,8 +353,12 @@ pub(super) fn point_of(
 pub(super) fn solid(
     node: &Node<'_>,
     filling: Option<Filling<'_, '_>>,
+    files: &Files<'_>,
     problems: &mut Problems,
 ) -> Option<Arc<dyn Solid>> {
+    if let Some(("mesh", mesh)) = node.only_entry() {
+        return Some(files.mesh(mesh, problems)?);
+    }
     if let Some(("parts", inner)) = node.only_entry() {
         if filling.is_none() {
             node.problem(
@@ -342,9 +366,10 @@ pub(super) fn solid(
                 problems,
             );
         }
-        return parts::read(&inner, filling?, problems);
+        return parts::read(&inner, filling?, files, problems);
     }
-    let names: Vec<&str> = SOLIDS.iter().map(|kind| kind.name).collect();
+    let names = SOLIDS.iter().map(|kind| kind.name);
+    let names: Vec<&str> = names.chain(["mesh", "parts"]).collect();
     let Some((name, name_span, inner)) = node.choice() else {
         let remedy = format!(
             "must name one solid and its lengths, as in {{ sphere = {{ radius = 0.5 }} }}; known: {}",

@@ -5,7 +5,9 @@
 
 mod body;
 mod event;
+mod files;
 mod inertia;
+mod inertial;
 mod pairing;
 mod parts;
 mod problem;
@@ -15,6 +17,7 @@ mod table;
 
 pub use body::Body;
 pub use event::{Action, Event, Framed};
+pub use files::{Enclosure, Folder, Library};
 pub(crate) use pairing::lasting;
 pub use problem::Problems;
 
@@ -33,8 +36,10 @@ pub struct Scene {
     pub title: String,
     /// The comment that opens the file, as Markdown: what to look at.
     pub notes: String,
-    /// Of the file's text: the same for the same scene.
+    /// Of the file's text and of the files it names: the same for the same scene.
     pub fingerprint: u64,
+    /// The files it names, as they were read: with its text, all there is to it.
+    pub enclosures: Vec<Enclosure>,
     /// s.
     pub duration: f64,
     pub stepping: Stepping,
@@ -124,7 +129,8 @@ impl Scene {
             || "scene".to_owned(),
             |stem| stem.to_string_lossy().into_owned(),
         );
-        Ok(Self::parse(&file, &name, &source)?)
+        let folder = Folder(path.parent().map(Path::to_owned).unwrap_or_default());
+        Ok(Self::parse_with(&file, &name, &source, &folder)?)
     }
 
     /// Why the scene's method does not take the torques it has; a scene that was parsed has no such
@@ -133,9 +139,20 @@ impl Scene {
         pairing::refusal(self)
     }
 
-    /// Checks the text of a scene; `file` is how messages call it.
+    /// Checks the text of a scene that names no other files; `file` is how messages call it.
     pub fn parse(file: &str, name: &str, source: &str) -> Result<Self, Problems> {
-        read::scene(file, name, source)
+        Self::parse_with(file, name, source, &[][..])
+    }
+
+    /// Checks the text of a scene; the files that it names (meshes, robots) come from a library: a
+    /// [`Folder`], or the [`Enclosure`]s of an earlier reading.
+    pub fn parse_with<L: Library + ?Sized>(
+        file: &str,
+        name: &str,
+        source: &str,
+        library: &L,
+    ) -> Result<Self, Problems> {
+        read::scene(file, name, source, &library)
     }
 }
 

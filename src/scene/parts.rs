@@ -5,6 +5,7 @@
 //! says anything, by volume.
 
 use super::body::{name, orientation, solid, vector};
+use super::files::Files;
 use super::problem::Problems;
 use super::table::{Node, Table};
 use crate::mass::solids::Solid;
@@ -34,6 +35,7 @@ impl<'t, 'd> Filling<'t, 'd> {
 pub(super) fn read(
     node: &Node<'_>,
     filling: Filling<'_, '_>,
+    files: &Files<'_>,
     problems: &mut Problems,
 ) -> Option<Arc<dyn Solid>> {
     let tables = node.tables("a part", problems)?;
@@ -44,8 +46,10 @@ pub(super) fn read(
         );
         return None;
     }
-    let read: Vec<Option<(Part, Weight)>> =
-        tables.iter().map(|table| part(table, problems)).collect();
+    let read: Vec<Option<(Part, Weight)>> = tables
+        .iter()
+        .map(|table| part(table, files, problems))
+        .collect();
     let unique = names_differ(&tables, problems);
     let parts: Option<Vec<(Part, Weight)>> = read.into_iter().collect();
     let parts = parts.filter(|_| unique)?;
@@ -53,7 +57,7 @@ pub(super) fn read(
 }
 
 /// A part, its mass still open.
-fn part(table: &Table<'_>, problems: &mut Problems) -> Option<(Part, Weight)> {
+fn part(table: &Table<'_>, files: &Files<'_>, problems: &mut Problems) -> Option<(Part, Weight)> {
     let name = match table.get("name") {
         None => Some(None),
         Some(node) => name(&node, problems).map(|name| Some(name.to_owned())),
@@ -64,7 +68,7 @@ fn part(table: &Table<'_>, problems: &mut Problems) -> Option<(Part, Weight)> {
             "its solid, as in { sphere = { radius = 0.5 } }",
             problems,
         )
-        .and_then(|node| solid(&node, None, problems));
+        .and_then(|node| solid(&node, None, files, problems));
     let position = vector(table, "position", "m", problems);
     let orientation = orientation(table, problems);
     let mass = table.get("mass");

@@ -1,5 +1,6 @@
 //! The file as a whole: its keys, its opening comment, its cross references.
 
+use super::files::{Enclosure, Files, Library};
 use super::problem::Problems;
 use super::table::{Node, Table, nearest};
 use super::{Record, Scene, StateRate, Stepping, body, event, pairing};
@@ -25,7 +26,12 @@ const MOST_ROWS: f64 = 3e7;
 /// More steps than this cannot be counted exactly in an f64 (2⁵³), nor waited for.
 const MOST_STEPS: f64 = 9e15;
 
-pub(super) fn scene(file: &str, name: &str, source: &str) -> Result<Scene, Problems> {
+pub(super) fn scene(
+    file: &str,
+    name: &str,
+    source: &str,
+    library: &dyn Library,
+) -> Result<Scene, Problems> {
     // Some editors open a file with a mark of its encoding.
     let source = source.strip_prefix('\u{feff}').unwrap_or(source);
     let mut problems = Problems::new(file, source);
@@ -39,15 +45,34 @@ pub(super) fn scene(file: &str, name: &str, source: &str) -> Result<Scene, Probl
         return Err(problems);
     }
     let top = Table::new(document.get_ref(), 0..0, "the scene");
-    let scene = read(&top, name, source, &mut problems);
+    let files = Files::new(library);
+    let scene = read(&top, name, source, &files, &mut problems);
     top.check_keys(&mut problems);
     match scene {
-        Some(scene) if problems.is_empty() => Ok(scene),
+        Some(scene) if problems.is_empty() => Ok(scene.with(files.into_enclosures())),
         _ => Err(problems),
     }
 }
 
-fn read(top: &Table<'_>, name: &str, source: &str, problems: &mut Problems) -> Option<Scene> {
+impl Scene {
+    /// With the files that it names; they are part of what it is.
+    fn with(mut self, enclosures: Vec<Enclosure>) -> Self {
+        for enclosure in &enclosures {
+            let bytes = enclosure.fingerprint.to_le_bytes();
+            self.fingerprint = hashed(self.fingerprint, &bytes);
+        }
+        self.enclosures = enclosures;
+        self
+    }
+}
+
+fn read(
+    top: &Table<'_>,
+    name: &str,
+    source: &str,
+    files: &Files<'_>,
+    problems: &mut Problems,
+) -> Option<Scene> {
     let title = top
         .get("title")
         .and_then(|node| node.str(problems))
@@ -63,7 +88,8 @@ fn read(top: &Table<'_>, name: &str, source: &str, problems: &mut Problems) -> O
     let gyroscopic = effects.iter().any(|(name, _)| *name == "gyroscopic");
     let tables = top.tables("body", problems);
     let swarms = top.tables("swarm", problems);
-    let bodies = body::read_all(&tables, &swarms, gyroscopic, problems);
+    let context = body::Context { gyroscopic, files };
+    let bodies = body::read_all(&tables, &swarms, context, problems);
     if bodies.declared() == 0 && !top.has("body") && !top.has("swarm") {
         problems.add(top.span(), "the scene has no body; add a [[body]]");
     }
@@ -84,7 +110,8 @@ fn read(top: &Table<'_>, name: &str, source: &str, problems: &mut Problems) -> O
         name: name.to_owned(),
         title: title.replace(char::is_control, " "),
         notes: opening_comment(source),
-        fingerprint: fingerprint(source),
+        fingerprint: fingerprint(source.as_bytes()),
+        enclosures: Vec::new(),
         duration: duration?,
         stepping: stepping?,
         step: step?,
@@ -377,8 +404,12 @@ fn opening_comment(source: &str) -> String {
 }
 
 /// FNV-1a over the bytes (Fowler, Noll & Vo): short, and the same everywhere.
-fn fingerprint(source: &str) -> u64 {
-    source.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+pub(super) fn fingerprint(bytes: &[u8]) -> u64 {
+    hashed(0xcbf2_9ce4_8422_2325, bytes)
+}
+
+fn hashed(start: u64, bytes: &[u8]) -> u64 {
+    bytes.iter().fold(start, |hash, &byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     })
 }

@@ -22,8 +22,9 @@ pub use cubes::{CubeRow, Cubes, orders};
 pub use integrals::Integrals;
 pub use read::{Format, LARGEST, MeshError, parse, read};
 
-use super::solids::{Solid, Surface, Triangles};
+use super::solids::{NamedPoint, Solid, Surface, Triangles};
 use crate::math::symmetric_eigen;
+use crossing::Crossing;
 use nalgebra::{Matrix3, Vector3};
 
 /// Triangles that one mesh may have: two million, which is 100 MB as binary STL.
@@ -121,8 +122,20 @@ impl Solid for Polyhedron {
         self.integrals.centre
     }
 
-    fn points(&self) -> Vec<(&'static str, Vector3<f64>)> {
-        vec![("centre", self.centre()), ("origin", Vector3::zeros())]
+    /// By the faces that a ray from the point along x goes through: inside where their number is odd.
+    fn contains(&self, point: Vector3<f64>) -> bool {
+        let beyond = |face: &[Vector3<f64>; 3]| {
+            let met = Crossing::of(*face).x_at(point.y, point.z);
+            met.is_some_and(|x| x > point.x)
+        };
+        self.triangles.corners().filter(beyond).count() % 2 == 1
+    }
+
+    fn points(&self) -> Vec<NamedPoint> {
+        vec![
+            ("centre".into(), self.centre()),
+            ("origin".into(), Vector3::zeros()),
+        ]
     }
 
     fn surface(&self) -> Surface {
