@@ -547,6 +547,57 @@ fn check_says_right_or_wrong() {
 }
 
 #[test]
+fn mass_weighs_a_mesh_and_slices_it() {
+    let arguments = [
+        "mass",
+        "scenes/t_handle.obj",
+        "--scale",
+        "0.01",
+        "--density",
+        "7850",
+    ];
+    let output = torquescope(&root()).args(arguments).output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(text(&output.stdout).contains("0.382956 kg"));
+    let output = torquescope(&root())
+        .args(arguments)
+        .args(["--cubes", "8,16", "--json"])
+        .output()
+        .unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    // tests/oracles/t_handle.csv: 311.654 cm⁵.
+    let moment = json["principal"][1]["moment"].as_f64().unwrap();
+    assert!((moment / (7850.0 * 311.6540344559432e-10) - 1.0).abs() < 1e-13);
+    assert_eq!(json["cubes"].as_array().unwrap().len(), 2);
+    let output = torquescope(&root())
+        .args(["mass", "Cargo.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn mass_judges_a_robots_links_and_draws_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("arm.rrd");
+    let output = torquescope(&root())
+        .args(["mass", "tests/fixtures/robots/arm.urdf", "--record"])
+        .arg(&out)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("5 of 10 have an inertia that no rigid body has"));
+    assert!(text(&output.stdout).contains("implausible"));
+    assert!(std::fs::read(&out).unwrap().starts_with(b"RRF2"));
+    let output = torquescope(&root())
+        .args(["mass", "tests/fixtures/robots/arm.xml", "--json"])
+        .output()
+        .unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["links"][5]["verdict"], "impossible");
+}
+
+#[test]
 fn view_refuses_what_is_no_recording() {
     let output = torquescope(&root())
         .args(["view", "Cargo.toml"])

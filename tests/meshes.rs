@@ -5,7 +5,9 @@ use proptest::prelude::*;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::path::Path;
-use torquescope::mass::mesh::{Cubes, MeshError, Polyhedron, Soup, orders, parse, read};
+use torquescope::mass::mesh::{
+    Cubes, MeshError, Polyhedron, Soup, mean_order, orders, parse, read,
+};
 use torquescope::mass::solids::Solid;
 use torquescope::mass::tensor::turned;
 
@@ -544,6 +546,12 @@ fn cubes_tend_to_the_exact_tensor() {
             "{n}"
         );
     }
+    let rows = orders(&solid, &[8, 16]);
+    assert_eq!(
+        (rows[1].order, mean_order(&rows)),
+        (None, None),
+        "rounding has no order"
+    );
     // Bodies in general position, one of them with a cavity: at the surface n² blocks of n³ are counted wholly or not.
     let turn = Rotation3::from_euler_angles(0.3, 0.7, 0.2);
     let hollow = both(&sphere(4), &inward(&moved(&sphere(3), |p| p * 0.5)));
@@ -551,9 +559,13 @@ fn cubes_tend_to_the_exact_tensor() {
         let solid = body(&moved(&soup, |p| turn * p + Vector3::new(3.0, 2.0, -1.0)));
         let rows = orders(&solid, &[8, 16, 32, 64, 128]);
         let differences: Vec<f64> = rows.iter().map(|row| row.difference.unwrap()).collect();
-        // First order at worst, second where errors cancel; over four doublings the mean order is between.
-        let order = (differences[0] / differences[4]).log2() / 4.0;
+        // First order at worst; where errors of n² blocks cancel like random ones, second.
+        let order = mean_order(&rows).unwrap();
         assert!((1.0..2.6).contains(&order), "{order}: {differences:?}");
+        for pair in rows.windows(2) {
+            let ratio = pair[0].difference.unwrap() / pair[1].difference.unwrap();
+            assert!((pair[1].order.unwrap() - ratio.log2()).abs() < 1e-12);
+        }
         assert!(differences[4] < 1e-3, "{differences:?}");
         let cubes = rows[4].cubes.integrals.unwrap();
         assert!((cubes.centre - solid.integrals().centre).norm() < 1e-3);

@@ -105,6 +105,8 @@ struct MeshReport {
     inertia: [[f64; 3]; 3],
     principal: Vec<Principal>,
     cubes: Vec<CubeReport>,
+    /// How fast the cubes' difference falls with n, over all of them.
+    order: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -146,6 +148,7 @@ impl MeshReport {
                 .iter()
                 .map(|row| CubeReport::new(row, density))
                 .collect(),
+            order: mesh::mean_order(rows),
         }
     }
 
@@ -182,7 +185,13 @@ impl MeshReport {
             rows,
         );
         text += "\n(an n-th part of the box about the mesh along each axis. I: the exact tensor. order: log₂ of how \
-            much smaller the difference gets as n doubles, between 1 and 2 and never smooth)";
+            much smaller the difference gets as n doubles)";
+        if let Some(order) = self.order {
+            text += &format!(
+                "\nover all rows the difference falls as n^-{order:.2}: from 1 to 2 is what to expect, as the blocks \
+                 at the surface err either way; where faces lie along the blocks it jumps"
+            );
+        }
         text
     }
 }
@@ -302,8 +311,8 @@ fn robot_text(path: &Path, robot: &Description, judged: &[Judged<'_>]) -> String
         let inertial = one.link.inertial.as_ref().and_then(|i| i.as_ref().ok());
         let cells = inertial.map(|inertial| {
             let t = inertial.tensor_in_link();
-            let diagonal = short_numbers(&[t.m11, t.m22, t.m33]).join(" ");
-            let off = short_numbers(&[t.m12, t.m13, t.m23]).join(" ");
+            let t = short_numbers(&[t.m11, t.m22, t.m33, t.m12, t.m13, t.m23]);
+            let (diagonal, off) = (t[..3].join(" "), t[3..].join(" "));
             let moments = one.verdict.as_ref().map(|v| short_numbers(&v.moments));
             [
                 short(inertial.mass),

@@ -123,7 +123,7 @@ impl Inertial {
 /// Why a file has no list of links.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LinksError {
-    #[error("cannot be read: {0}")]
+    #[error("cannot be read: {0}; name a description that is there and that you may read")]
     Unreadable(String),
     #[error("is larger than {LARGEST} bytes, which no description of a robot is")]
     TooLarge,

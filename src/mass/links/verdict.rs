@@ -95,7 +95,9 @@ fn implausible(ratio: f64, size: Vector3<f64>) -> Option<String> {
     } else {
         return None;
     };
-    let [x, y, z]: [f64; 3] = size.into();
+    // Four digits say which size is meant.
+    let digits = |x: f64| format!("{x:.3e}").parse().unwrap_or(x);
+    let [x, y, z]: [f64; 3] = size.map(digits).into();
     Some(format!(
         "its largest moment is {times:.1e} times {way} than that of a uniform box of its size ({x} × {y} × {z} m) and mass: {units}"
     ))

@@ -50,6 +50,25 @@ impl Cubes {
     }
 }
 
+/// A difference below this is rounding: what fills its own box is cut without a remainder.
+const ROUNDING: f64 = 1e-13;
+
+/// The order over all rows: how fast the difference falls with n, as the slope of the line that fits best
+/// through the logarithms of both. Steadier than the orders of single rows.
+pub fn mean_order(rows: &[CubeRow]) -> Option<f64> {
+    let points = rows.iter().filter_map(|row| {
+        let difference = row.difference.filter(|&x| x > ROUNDING)?;
+        Some((libm::log2(row.cubes.n as f64), libm::log2(difference)))
+    });
+    let points: Vec<(f64, f64)> = points.collect();
+    let count = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    let xx: f64 = points.iter().map(|p| (p.0 - x) * (p.0 - x)).sum();
+    let xy: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
+    (xx > 0.0).then_some(-xy / xx)
+}
+
 /// Blocks of ever smaller size beside the exact body; each n twice the one before has an order.
 pub fn orders(body: &Polyhedron, ns: &[usize]) -> Vec<CubeRow> {
     let exact = body.integrals().tensor;
@@ -60,7 +79,7 @@ pub fn orders(body: &Polyhedron, ns: &[usize]) -> Vec<CubeRow> {
             .integrals
             .map(|sum| (sum.tensor - exact).norm() / exact.norm());
         let order = rows.last().and_then(|before| {
-            let ratio = before.difference? / difference?;
+            let ratio = before.difference? / difference.filter(|&x| x > ROUNDING)?;
             let doubled = 2 * before.cubes.n == cubes.n;
             (doubled && ratio.is_finite() && ratio > 0.0).then(|| libm::log2(ratio))
         });

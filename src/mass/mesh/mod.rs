@@ -18,7 +18,7 @@ mod read;
 mod stl;
 
 pub use closed::{Edge, Flaw};
-pub use cubes::{CubeRow, Cubes, orders};
+pub use cubes::{CubeRow, Cubes, mean_order, orders};
 pub use integrals::Integrals;
 pub use read::{Format, LARGEST, MeshError, parse, read};
 

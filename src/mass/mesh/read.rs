@@ -35,7 +35,7 @@ impl Format {
 /// Why there is no body; the file's name is for the caller to say.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshError {
-    #[error("cannot be read: {0}")]
+    #[error("cannot be read: {0}; name a mesh that is there and that you may read")]
     Unreadable(String),
     #[error("is larger than {LARGEST} bytes; make the mesh coarser")]
     TooLarge,
