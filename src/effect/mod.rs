@@ -8,12 +8,14 @@ mod damping;
 mod gravity;
 mod gyroscopic;
 mod load;
+mod pulse;
 mod push;
 mod term;
 
 pub use couple::Couple;
 pub use damping::{Decay, Elapsed};
 pub use load::{Frame, Load, Wrench, WrenchBlock};
+pub use pulse::{PROFILES, Profile, Pulse, Pulsed};
 pub use push::Push;
 pub use term::{Depends, Term};
 

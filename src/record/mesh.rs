@@ -1,10 +1,10 @@
 //! Surfaces as triangle meshes with normals, striped so that every turn is seen.
 
 use super::look::{self, Colour};
+use crate::mass::equivalent;
 use crate::mass::solids::{ProfilePoint, Surface};
-use crate::math::symmetric_eigen;
 use crate::trace::Subject;
-use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use rerun::archetypes::Mesh3D;
 
 /// Pieces round the axis, and stripes among them: a cone that spins about its own axis would
@@ -31,12 +31,16 @@ pub fn lowest(subject: &Subject) -> f64 {
 }
 
 fn faces(subject: &Subject, colour: Colour) -> Faces {
-    let (surface, shift) = match &subject.solid {
-        Some(solid) => (solid.surface(), -solid.centre()),
-        None => (Surface::Cuboid(equivalent_box(subject)), Vector3::zeros()),
+    let (surface, shift, turn) = match &subject.solid {
+        Some(solid) => (solid.surface(), -solid.centre(), UnitQuaternion::identity()),
+        None => {
+            let (extents, turn) = equivalent_box(subject);
+            (Surface::Cuboid(extents), Vector3::zeros(), turn)
+        }
     };
     let mut faces = Faces {
         shift,
+        turn,
         ..Faces::default()
     };
     match surface {
@@ -57,7 +61,7 @@ pub fn radius(subject: &Subject) -> f64 {
         .as_ref()
         .map(|solid| (solid.surface(), solid.centre().y));
     match surface {
-        None => 0.5 * equivalent_box(subject).norm(),
+        None => 0.5 * equivalent_box(subject).0.norm(),
         Some((Surface::Cuboid(extents), _)) => 0.5 * extents.norm(),
         Some((Surface::Revolution(profile), centre)) => profile
             .iter()
@@ -67,28 +71,23 @@ pub fn radius(subject: &Subject) -> f64 {
     }
 }
 
-/// The ellipsoid of uniform density with the body's mass and inertia about its centre of mass:
-/// half axes `a_i² = 5/(2m) (I_j + I_k - I_i)`, and its attitude in the body.
+/// The ellipsoid of the same mass and inertia: half axes, and its attitude in the body.
 pub fn equivalent_ellipsoid(subject: &Subject) -> Option<(Vector3<f64>, UnitQuaternion<f64>)> {
     let mass = subject.mass?;
-    let (axes, moments) = symmetric_eigen(&subject.inertia_c);
-    let squares = moments.map(|i| 2.5 / mass * (moments.sum() - 2.0 * i));
-    let rotation = Rotation3::from_matrix_unchecked(axes);
-    let half = squares.map(|square| square.max(0.0).sqrt());
-    Some((half, UnitQuaternion::from_rotation_matrix(&rotation)))
+    Some(equivalent::ellipsoid(mass, &subject.inertia_c))
 }
 
-/// Full extents of the cuboid of the same inertia, for a body without a shape: the ellipsoid's
-/// half axes times `2 √(3/5)`; a cube of half a metre where the mass is infinite.
-fn equivalent_box(subject: &Subject) -> Vector3<f64> {
-    equivalent_ellipsoid(subject).map_or(Vector3::repeat(0.5), |(half, _)| {
-        half * (2.0 * 0.6_f64.sqrt())
-    })
+/// Full extents of the cuboid of the same inertia, for a body without a shape, and its attitude in
+/// the body.
+fn equivalent_box(subject: &Subject) -> (Vector3<f64>, UnitQuaternion<f64>) {
+    equivalent::cuboid(subject.mass, &subject.inertia_c)
 }
 
 #[derive(Default)]
 struct Faces {
     shift: Vector3<f64>,
+    /// Axes in which the corners are given → body axes.
+    turn: UnitQuaternion<f64>,
     points: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
     colours: Vec<u32>,
@@ -101,8 +100,9 @@ impl Faces {
         let first = self.points.len() as u32;
         for (point, normal) in corners {
             self.points
-                .push((point + self.shift).map(|x| x as f32).into());
-            self.normals.push(normal.map(|x| x as f32).into());
+                .push((self.turn * point + self.shift).map(|x| x as f32).into());
+            self.normals
+                .push((self.turn * normal).map(|x| x as f32).into());
             self.colours.push(colour);
         }
         self.triangles.push([first, first + 1, first + 2]);

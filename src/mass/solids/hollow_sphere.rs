@@ -2,6 +2,7 @@
 //! its limit a → b, the thin shell: `I = 2/3 m r²`.
 
 use super::{Parameter, ProfilePoint, Solid, SolidKind, Surface, length, positive};
+use crate::mass::ray::{Hit, Ray};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -62,5 +63,9 @@ impl Solid for HollowSphere {
 
     fn surface(&self) -> Surface {
         Surface::Revolution(vec![ProfilePoint::half_circle(self.radius)])
+    }
+
+    fn ray(&self, ray: &Ray) -> Option<Hit> {
+        ray.meets_sphere(self.radius)
     }
 }

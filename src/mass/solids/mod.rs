@@ -9,6 +9,7 @@ mod cylinder;
 mod hollow_sphere;
 mod sphere;
 
+use super::ray::{Hit, Ray};
 use nalgebra::Vector3;
 use std::fmt::Debug;
 
@@ -32,6 +33,12 @@ pub trait Solid: Debug + Send + Sync {
 
     /// Its shape, for drawing, from the solid's origin.
     fn surface(&self) -> Surface;
+
+    /// Where a ray (the solid's axes, from its origin) first meets it. What is drawn of flat, cylindrical
+    /// and conical pieces is exact; a solid that is drawn in facets says itself where it is met.
+    fn ray(&self, ray: &Ray) -> Option<Hit> {
+        self.surface().meets(ray)
+    }
 }
 
 /// The outer surface of a solid.
