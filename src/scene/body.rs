@@ -109,7 +109,7 @@ pub(super) fn read_all(tables: &[Table<'_>], gyroscopic: bool, problems: &mut Pr
 const LONGEST_NAME: usize = 64;
 
 /// Names become paths of the recording, so they hold nothing that a path would read otherwise.
-fn name<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
+pub(super) fn name<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
     let name = node.str(problems)?;
     let plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
     if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(plain) {
@@ -423,7 +423,7 @@ fn immovable(table: &Table<'_>, problems: &mut Problems) -> Option<[bool; 3]> {
     Some(held)
 }
 
-fn orientation(node: Node<'_>, problems: &mut Problems) -> Option<UnitQuaternion<f64>> {
+pub(super) fn orientation(node: Node<'_>, problems: &mut Problems) -> Option<UnitQuaternion<f64>> {
     if !node.is_table() {
         let [x, y, z, w] = node.numbers::<4>("a quaternion x, y, z, w, body to world", problems)?;
         let largest = [x, y, z, w]

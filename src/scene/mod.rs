@@ -6,12 +6,13 @@
 mod body;
 mod event;
 mod pairing;
+pub mod pick;
 mod problem;
 mod read;
 mod table;
 
 pub use body::Body;
-pub use event::{Action, Event, Framed};
+pub use event::{Action, Change, Click, Event, Framed, Target};
 pub(crate) use pairing::lasting;
 pub use problem::Problems;
 
@@ -128,6 +129,11 @@ impl Scene {
     /// reason, one that was given another method may.
     pub fn refusal(&self) -> Option<String> {
         pairing::refusal(self)
+    }
+
+    /// Which of the effects are on as the scene starts, in their order.
+    pub fn on_at_start(&self) -> Vec<bool> {
+        vec![true; self.effects.len()]
     }
 
     /// Checks the text of a scene; `file` is how messages call it.
