@@ -142,6 +142,14 @@ impl Load {
         each.collect()
     }
 
+    /// Whether what is applied to a body changes with time by itself, whatever the body does.
+    pub fn changes_with_time(&self, lane: usize, inertial: &InertialBlock) -> bool {
+        let own = self.effects.iter();
+        let own = own.filter(|effect| effect.lane().is_none_or(|only| only == lane));
+        own.map(|effect| effect.depends(inertial).time)
+            .any(|time| time)
+    }
+
     /// All effects as constant forces and torques, where they are nothing else.
     pub fn terms(&self, inertial: &InertialBlock) -> Option<Vec<Term>> {
         let each = self.effects.iter().map(|effect| effect.terms(inertial));

@@ -40,6 +40,11 @@ pub trait Effect: Debug + Send + Sync {
         None
     }
 
+    /// The only lane of the block it acts on, where it is an event's; `None` is any.
+    fn lane(&self) -> Option<usize> {
+        None
+    }
+
     /// What it depends on: methods that would lose their order by it are refused. An effect that
     /// does not say is taken to depend on everything.
     fn depends(&self, inertial: &InertialBlock) -> Depends {

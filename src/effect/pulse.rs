@@ -78,6 +78,10 @@ impl Effect for Pulsed {
         wrench.add(lane, peak.force_w * part, peak.tau_w * part);
     }
 
+    fn lane(&self) -> Option<usize> {
+        Some(self.peak.lane())
+    }
+
     fn depends(&self, _: &InertialBlock) -> Depends {
         Depends {
             time: true,

@@ -112,15 +112,6 @@ struct Times {
 
 impl Times {
     fn of(scene: &Scene) -> Self {
-        let mut on = scene.on_at_start();
-        let mut known = HashMap::from([(on.clone(), 0)]);
-        let mut times = Self {
-            sets: vec![Set {
-                on: on.clone(),
-                by: None,
-            }],
-            periods: vec![(0.0, 0)],
-        };
         let events = scene.events.iter().enumerate();
         let mut switches: Vec<(usize, f64, usize, bool)> = events
             .filter_map(|(k, event)| match event.action {
@@ -129,19 +120,28 @@ impl Times {
             })
             .collect();
         switches.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let mut on = scene.on_at_start();
+        let mut times = Self {
+            sets: Vec::new(),
+            periods: Vec::new(),
+        };
+        let mut known = HashMap::new();
+        let mut begins = |from: f64, on: &[bool], by: Option<usize>| {
+            let set = *known.entry(on.to_vec()).or_insert(times.sets.len());
+            if set == times.sets.len() {
+                let on = on.to_vec();
+                times.sets.push(Set { on, by });
+            }
+            times.periods.push((from, set));
+        };
+        if switches.first().is_none_or(|switch| switch.1 > 0.0) {
+            begins(0.0, &on, None);
+        }
         for together in switches.chunk_by(|a, b| a.1 == b.1) {
             for &(_, _, effect, to) in together {
                 on[effect] = to;
             }
-            let (by, from, ..) = together[0];
-            let set = *known.entry(on.clone()).or_insert_with(|| {
-                times.sets.push(Set {
-                    on: on.clone(),
-                    by: Some(by),
-                });
-                times.sets.len() - 1
-            });
-            times.periods.push((from, set));
+            begins(together[0].1, &on, Some(together[0].0));
         }
         times
     }

@@ -86,6 +86,8 @@ const SPIN: usize = 3;
 struct Body {
     lane: usize,
     terms: Option<Arc<[Term]>>,
+    /// Whether what is applied changes with time by itself.
+    timed: bool,
     /// For the sake of the decay, s.
     longest: f64,
     /// The last step, s: from where, how long, and its end.
@@ -172,6 +174,7 @@ impl Body {
         let mut this = Self {
             lane,
             terms,
+            timed: interval.load.changes_with_time(lane, &interval.inertial),
             longest: DECAY_A_STEP / rates,
             from: t,
             h: 0.0,
@@ -299,7 +302,15 @@ impl Body {
             // A difference of slopes is known to some roundings of them; less is no error but noise,
             // and a quantity that starts at zero would make it look large whatever the step.
             let slopes = self.k[..12].iter().map(|k| norm(&k[part]));
-            if e5 <= NOISE * slopes.fold(0.0, f64::max) {
+            let mut noise = NOISE * slopes.fold(0.0, f64::max);
+            if self.timed {
+                // A time is known to a rounding, and slopes that change with it no better: what begins at
+                // rest under a force that begins at nothing shows it.
+                let changes = self.k[..12].iter();
+                let changes = changes.map(|k| norm(&along(k, -1.0, &self.k[0])[part]));
+                noise += NOISE * (self.reached.abs() / h) * changes.fold(0.0, f64::max);
+            }
+            if e5 <= noise {
                 return 0.0;
             }
             let unit = h / (interval.tolerance * size);
