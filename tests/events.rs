@@ -649,6 +649,14 @@ fn a_plan_keeps_to_its_accuracy_through_every_kind_of_event() {
             let off = angle_between(a.motion.q_wb, b.motion.q_wb);
             assert!(off <= accuracy, "{accuracy:e}: {off:e}");
         }
+        // Every body's intervals follow one another, the one that a click ended too.
+        for body in 0..2 {
+            let own = plan.intervals.iter().filter(|i| i.members.contains(&body));
+            let own: Vec<(f64, f64)> = own.map(|i| (i.from, i.until)).collect();
+            assert!(own.windows(2).all(|w| w[0].1 == w[1].0), "{own:?}");
+            assert_eq!(own.first().map(|i| i.0), Some(0.0));
+            assert_eq!(own.last().map(|i| i.1), Some(2.0));
+        }
         // Between the impulses nothing acts on the brick: there it goes in closed form.
         let last = plan
             .intervals

@@ -98,6 +98,7 @@ impl Plan {
                 tolerance,
             }),
             log: Vec::new(),
+            last: HashMap::new(),
         };
         let achieved = check::run(scene, &mut planner)?.apart(&reference.run);
         Ok(Self::new(planner.log, None, achieved, reference))
@@ -125,6 +126,7 @@ impl Plan {
                 duration: scene.duration,
                 way,
                 log: Vec::new(),
+                last: HashMap::new(),
             };
             let achieved = match check::run(scene, &mut planner) {
                 Ok(run) => run.apart(&reference.run),
@@ -228,6 +230,8 @@ struct Planner {
     duration: f64,
     way: Way,
     log: Vec<Planned>,
+    /// By first body of a group: its last interval in the log.
+    last: HashMap<usize, usize>,
 }
 
 impl Choose for Planner {
@@ -244,6 +248,11 @@ impl Choose for Planner {
             }
             Kind::Adaptive | Kind::Closed => None,
         };
+        // A click that hits ends an interval before it was to end.
+        let last = self.last.insert(setting.members.start, self.log.len());
+        if let Some(before) = last.and_then(|last| self.log.get_mut(last)) {
+            before.until = before.until.min(setting.from);
+        }
         self.log.push(Planned {
             members: setting.members.clone(),
             from: setting.from,

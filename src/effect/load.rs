@@ -144,10 +144,9 @@ impl Load {
 
     /// Whether what is applied to a body changes with time by itself, whatever the body does.
     pub fn changes_with_time(&self, lane: usize, inertial: &InertialBlock) -> bool {
-        let own = self.effects.iter();
-        let own = own.filter(|effect| effect.lane().is_none_or(|only| only == lane));
-        own.map(|effect| effect.depends(inertial).time)
-            .any(|time| time)
+        let is_own = |effect: &Arc<dyn Effect>| effect.lane().is_none_or(|only| only == lane);
+        let mut own = self.effects.iter().filter(|effect| is_own(effect));
+        own.any(|effect| effect.depends(inertial).time)
     }
 
     /// All effects as constant forces and torques, where they are nothing else.

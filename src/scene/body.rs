@@ -106,13 +106,17 @@ pub(super) fn read_all(tables: &[Table<'_>], gyroscopic: bool, problems: &mut Pr
 }
 
 /// Bytes of a name, and of a label: what a picture can show.
-const LONGEST_NAME: usize = 64;
+pub(super) const LONGEST_NAME: usize = 64;
 
 /// Names become paths of the recording, so they hold nothing that a path would read otherwise.
-pub(super) fn name<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
-    let name = node.str(problems)?;
+pub(super) fn is_name(name: &str) -> bool {
     let plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-    if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(plain) {
+    !name.is_empty() && name.len() <= LONGEST_NAME && name.chars().all(plain)
+}
+
+fn name<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
+    let name = node.str(problems)?;
+    if !is_name(name) {
         node.problem(
             format!("is no name: it may hold up to {LONGEST_NAME} letters, digits, - and _ (a label may hold anything)"),
             problems,

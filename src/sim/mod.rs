@@ -496,12 +496,25 @@ impl<'s> Simulation<'s> {
     /// The bodies that some happenings may touch, as they are before.
     fn before(&self, now: Instant, happenings: &[Happening]) -> Vec<(usize, Sample)> {
         let mut bodies: Vec<usize> = Vec::new();
-        for &happening in happenings {
-            match &self.scene.events[happening.event()].target {
-                Target::Body(body) => bodies.push(*body),
-                Target::Hit(range) => bodies.extend(range.clone()),
-                Target::All => bodies.extend(0..self.subjects.len()),
-                Target::Log(_) => {}
+        let event = |happening: &Happening| &self.scene.events[happening.event()];
+        let sets = |happening| matches!(event(happening).action, Action::Set(_));
+        let moved = happenings.iter().any(sets);
+        for happening in happenings {
+            let event = event(happening);
+            match (&event.target, happening, &event.action) {
+                (Target::Body(body), ..) => bodies.push(*body),
+                (Target::Hit(_), Happening::Ends(index), _) => {
+                    let acting = self.acting.events.iter();
+                    let hit = acting.filter(|acting| acting.index == *index);
+                    bodies.extend(hit.map(|acting| acting.body));
+                }
+                // Where nothing is set first, it is known whom a ray will hit.
+                (Target::Hit(range), _, Action::Click(click)) if !moved => {
+                    bodies.extend(self.pick(range, click).map(|(body, _)| body));
+                }
+                (Target::Hit(range), ..) => bodies.extend(range.clone()),
+                (Target::All, ..) => bodies.extend(0..self.subjects.len()),
+                (Target::Log(_), ..) => {}
             }
         }
         bodies.sort_unstable();

@@ -126,8 +126,14 @@ fn name<'d>(
     problems: &mut Problems,
 ) -> Option<Arc<str>> {
     let node = table.get("name")?;
-    let name = body::name(&node, problems)?;
-    if !names.insert(name) {
+    let name = node.str(problems)?;
+    if !body::is_name(name) {
+        let most = body::LONGEST_NAME;
+        node.problem(
+            format!("is no name: it may hold up to {most} letters, digits, - and _"),
+            problems,
+        );
+    } else if !names.insert(name) {
         node.problem(
             "is the name of an earlier event too; give each its own",
             problems,
