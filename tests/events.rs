@@ -6,7 +6,8 @@ use common::Nowhere;
 use nalgebra::{Vector3, Vector4};
 use std::f64::consts::PI;
 use std::ops::Range;
-use torquescope::cost::Plan;
+use torquescope::cost::{Plan, Race};
+use torquescope::integrator;
 use torquescope::math::angle_between;
 use torquescope::scene::{Scene, Stepping};
 use torquescope::sim::{Outcome, Simulation};
@@ -722,4 +723,67 @@ fn more_events_than_a_scene_holds_are_refused() {
     // Together as well.
     let two = source("0.015") + "[[event]]\nat = 0.0\nevery = 0.02\nnote = \"tick\"\n";
     assert!(wrong(&two).contains("every = 0.02 makes 50001 events"));
+}
+
+/// A pulse on one body leaves the bits of another, in the same block of eight, as they are.
+#[test]
+fn a_neighbours_pulse_changes_no_bit() {
+    let source = |method: &str, events: &str| {
+        format!(
+            "duration = 1.0\n[stepping]\nmethod = \"{method}\"\nstep = 0.01\n[effects]\ngyroscopic = true\ngravity = [0.0, -9.81, 0.0]\n[[body]]\nname = \"top\"\nmass = 1.0\ninertia = [0.5, 0.8, 1.1]\nposition = [0.3, 0.1, -0.7]\npivot = [0.1, -0.5, 0.2]\nangular_velocity = [0.4, 3.0, 0.3]\n[[body]]\nname = \"b\"\nmass = 1.0\ninertia = [0.5, 0.8, 1.1]\n[[event]]\nat = 0.0\nfor = 1.0\nbody = \"top\"\nforce = [0.1, 0.2, 0.3]\npoint = {{ body = [0.3, 0.2, 0.1] }}\n{events}"
+        )
+    };
+    let pulse = "[[event]]\nat = 0.25\nfor = 0.5\nprofile = \"half_sine\"\nbody = \"b\"\ntorque = [0.3, 0.1, -0.2]\n";
+    for method in ["dop853", "rk4", "cf4", "rkn6", "buss", "dlm", "s15"] {
+        let boxed = end(&source(method, &pulse.replace("half_sine", "box")));
+        let pulsed = end(&source(method, pulse));
+        assert_eq!(boxed[0], pulsed[0], "{method}");
+        assert_ne!(boxed[1], pulsed[1], "{method}");
+    }
+}
+
+/// In a race every runner is clicked at its own place, and what happens to all happens once.
+#[test]
+fn a_race_has_the_scenes_events() {
+    let events = "[[event]]\nat = 0.2\nclick = { from = [0.1, 0.1, 9], direction = [0, 0, -1], force = 0.3 }\n[[event]]\nat = 0.3\nnote = \"struck\"\n[[event]]\nat = 0.5\nbody = \"far\"\nset = { position = [0, 0, 1] }\n[[event]]\nat = 0.6\nswitch = { effect = \"gyroscopic\", on = false }\n";
+    let scene = parse(&row("method = \"rk4\"\nstep = 0.01", events));
+    let methods: Vec<_> = ["rk4", "cf4"]
+        .into_iter()
+        .filter_map(integrator::find)
+        .collect();
+    let race = Race::new(&scene, &methods, 0.01, 3.0).unwrap();
+    let mut memory = Memory::default();
+    race.run(&mut memory).unwrap();
+    let count = |start: &str| {
+        memory
+            .texts()
+            .iter()
+            .filter(|text| text.starts_with(start))
+            .count()
+    };
+    let runners = race.scene.bodies.len();
+    assert_eq!(runners, 3);
+    assert_eq!(count("click on "), runners);
+    assert_eq!((count("struck"), count("switch: ")), (1, 1));
+    let place = |body: usize, time: f64| memory.at(body, time).last().unwrap().motion.position_w;
+    for body in 0..runners {
+        let start = race.scene.bodies[body].position_w;
+        let shift_w = start - scene.bodies[0].position_w;
+        near(place(body, 0.5), shift_w + Vector3::z(), 1e-15);
+    }
+}
+
+/// What rests, far from the start of the clock, under a force that begins at nothing: the finest tolerance
+/// follows it, though the time itself has roundings.
+#[test]
+fn a_pulse_late_on_a_body_at_rest_is_followed() {
+    for profile in ["half_sine", "ramp"] {
+        let source = format!(
+            "duration = 2000.0\n[stepping]\nmethod = \"dop853\"\ntolerance = 1e-16\nstep = 1.0\n[effects]\ngyroscopic = true\n[[body]]\nname = \"b\"\nmass = 2.0\ninertia = [0.5, 0.8, 0.6]\n[[event]]\nat = 1999.3\nfor = 0.5\nprofile = \"{profile}\"\nbody = \"b\"\ntorque = [0.0, 2.0, 0.0]\n"
+        );
+        let mean = if profile == "ramp" { 0.5 } else { 2.0 / PI };
+        // The clock's own roundings there are 2e-13 s.
+        let omega = end(&source)[0].motion.omega_w;
+        near(omega, Vector3::new(0.0, mean * 2.0 * 0.5 / 0.8, 0.0), 2e-12);
+    }
 }

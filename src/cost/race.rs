@@ -39,6 +39,11 @@ impl Race {
             Target::Body(body) | Target::Log(Some(body)) => *body == 0,
             Target::Hit(_) | Target::All | Target::Log(None) => true,
         });
+        for event in &mut alone.events {
+            if let Target::Hit(bodies) = &mut event.target {
+                *bodies = 0..1;
+            }
+        }
         alone.step = step.min(scene.duration);
         let mut runners = vec![None];
         let mut lost = Vec::new();

@@ -159,7 +159,7 @@ impl Group {
         if self.load.decay().is_some() || !self.load.gyroscopic() {
             return None;
         }
-        let terms = self.load.terms(&self.inertial)?;
+        let terms = self.load.terms_of(lane, &self.inertial)?;
         let q_bp = self.q_pb[lane].inverse();
         let weight = |term: Term| match term {
             Term::Force {
@@ -172,8 +172,7 @@ impl Group {
             }),
             _ => None,
         };
-        let own = terms.into_iter().filter(|term| term.lane() == lane);
-        own.map(weight).collect()
+        terms.into_iter().map(weight).collect()
     }
 
     /// Takes a stretch of steps. Where a body's state is lost it stops after that step: how many

@@ -167,10 +167,8 @@ impl Body {
             .load
             .decay()
             .map_or(0.0, |decay| decay.linear_rate().max(decay.angular_rate()));
-        let terms = interval.load.terms(&interval.inertial).map(|terms| {
-            let own = terms.into_iter().filter(|term| term.lane() == lane);
-            own.collect()
-        });
+        let terms = interval.load.terms_of(lane, &interval.inertial);
+        let terms = terms.map(Arc::from);
         let mut this = Self {
             lane,
             terms,
