@@ -44,7 +44,7 @@ impl Click {
 }
 
 pub(super) fn read(reading: Reading<'_, '_>, problems: &mut Problems) -> Option<(Target, Action)> {
-    let everybody = 0..reading.context.bodies.declared;
+    let everybody = 0..reading.context.bodies.valid.len();
     let unit = match reading.lasts {
         Some(_) => "N",
         None => "N·s",
