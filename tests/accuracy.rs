@@ -274,6 +274,17 @@ fn a_free_body_is_planned_in_closed_form() {
 /// step.
 #[test]
 fn pushes_at_awkward_times_cost_no_method_its_order() {
+    pushes_cost_no_order("box");
+}
+
+/// Of other profiles too: their kinks are at their ends, which no step has inside it.
+#[test]
+fn nor_do_pushes_that_swell() {
+    pushes_cost_no_order("half_sine");
+    pushes_cost_no_order("ramp");
+}
+
+fn pushes_cost_no_order(profile: &str) {
     let scene = |stepping: &str| {
         parse(&format!(
             r#"
@@ -294,6 +305,7 @@ fn pushes_at_awkward_times_cost_no_method_its_order() {
             [[event]]
             at = 0.12345678
             for = 0.3333333
+            profile = "{profile}"
             body = "b"
             force = [1.0, 2.0, -3.0]
             point = {{ body = [0.2, 0.5, -0.4] }}
@@ -301,6 +313,7 @@ fn pushes_at_awkward_times_cost_no_method_its_order() {
             [[event]]
             at = 0.7071067
             for = 0.5
+            profile = "{profile}"
             body = "b"
             torque = [0.5, -0.2, 0.1]
             frame = "body"
@@ -351,7 +364,11 @@ fn pushes_at_awkward_times_cost_no_method_its_order() {
         // remainders that the events leave differ from rung to rung, which moves a slope by some
         // tenths of itself.
         let order = f64::from(method.order);
-        assert!(slope > 0.7 * order, "{}: {slope} {errors:?}", method.name);
+        assert!(
+            slope > 0.7 * order,
+            "{profile}, {}: {slope} {errors:?}",
+            method.name
+        );
     }
     assert!(seen >= 8, "{seen}");
 }

@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
-use torquescope::scene::{Body, Scene};
+use torquescope::scene::{Body, Scene, Target};
 use torquescope::sim::{Outcome, Simulation};
 use torquescope::trace::{Instant, Note, Sample, Sink, SinkError, Track};
 
@@ -436,7 +436,7 @@ fn events_name_bodies_of_swarms() {
         ))
     };
     let struck = scene_of(&event("box_17"));
-    assert_eq!(struck.events[0].body, 18);
+    assert_eq!(struck.events[0].target, Target::Body(18));
     let ends = run(&struck).end;
     let free = run(&scene_of("")).end;
     for k in 0..21 {

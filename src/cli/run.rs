@@ -2,8 +2,9 @@
 
 use super::{Wrong, explain, print, view};
 use crate::cost::{Plan, PlanError};
+use crate::effect::Profile;
 use crate::record::{Heading, Recorder, Summary};
-use crate::scene::{Action, Event, Scene, Stepping};
+use crate::scene::{Event, Scene, Stepping};
 use crate::sim::{Blow, Outcome, SimError, Simulation};
 use crate::trace::{Sample, Subject, short, short_numbers, short_vector};
 use serde::Serialize;
@@ -167,7 +168,7 @@ fn tables(
 
 fn blow_row(scene: &Scene, subjects: &[Subject], blow: &Blow) -> Vec<String> {
     let event = &scene.events[blow.event];
-    let subject = &subjects[event.body];
+    let subject = &subjects[blow.body];
     let (torque, response) = match blow.jump {
         None => (short_vector(blow.tau_w), short_vector(blow.sample.alpha_w)),
         Some(jump) => (
@@ -190,22 +191,27 @@ fn blow_row(scene: &Scene, subjects: &[Subject], blow: &Blow) -> Vec<String> {
     ]
 }
 
-/// The event in words: the force and where it pushed, in the world.
+/// The event in words: the force at its peak and where it pushed, in the world.
 fn what(event: &Event, blow: &Blow) -> String {
-    let lasts = short(event.action.lasts());
-    match event.action {
-        Action::Push { .. } => match blow.sample.pushes.last() {
-            Some(push) => format!(
-                "push for {lasts} s\nF {} N\nat {} m",
-                short_vector(push.force_w),
-                short_vector(push.point_w)
-            ),
-            None => format!("push for {lasts} s"),
-        },
-        Action::Torque { .. } => format!("torque for {lasts} s"),
-        Action::Impulse { .. } => "impulse".to_owned(),
-        Action::AngularImpulse { .. } => "angular impulse".to_owned(),
+    let mut what = event.action.noun().to_owned();
+    if let Some(name) = &event.name {
+        what = format!("{name}\n{what}");
     }
+    let lasts = event.action.lasts();
+    if lasts > 0.0 {
+        what += &format!(" for {} s", short(lasts));
+    }
+    if event.action.profile() != Profile::Box {
+        what += &format!(", {}", event.action.profile().name());
+    }
+    if let Some(push) = blow.push {
+        what += &format!(
+            "\nF {} N\nat {} m",
+            short_vector(push.force_w),
+            short_vector(push.point_w)
+        );
+    }
+    what
 }
 
 fn end_row(subject: &Subject, sample: &Sample) -> Vec<String> {
@@ -244,10 +250,13 @@ struct Report<'a> {
 #[derive(Serialize)]
 struct BlowReport<'a> {
     time: f64,
+    /// Where the scene names it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    event: Option<&'a str>,
     body: &'a str,
     /// Of everything that acts on the body just after.
     torque: [f64; 3],
-    /// Of this event alone.
+    /// Of this event alone, at its peak.
     own_torque: [f64; 3],
     inverse_inertia: [[f64; 3]; 3],
     angular_acceleration: [f64; 3],
@@ -286,9 +295,10 @@ impl<'a> Report<'a> {
         error: Option<&SimError>,
     ) -> Self {
         let blow = |blow: &Blow| {
-            let subject = &subjects[scene.events[blow.event].body];
+            let subject = &subjects[blow.body];
             BlowReport {
                 time: blow.at.time,
+                event: scene.events[blow.event].name.as_deref(),
                 body: &subject.name,
                 torque: blow.sample.tau_w.into(),
                 own_torque: blow.tau_w.into(),

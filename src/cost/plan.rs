@@ -17,6 +17,7 @@ use crate::scene::{Scene, Stepping};
 use crate::sim::{Choice, Choose, Setting, SimError};
 use crate::trace::short;
 use nalgebra::{UnitQuaternion, Vector3};
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// What was chosen for some bodies between two events.
@@ -97,6 +98,7 @@ impl Plan {
                 tolerance,
             }),
             log: Vec::new(),
+            last: HashMap::new(),
         };
         let achieved = check::run(scene, &mut planner)?.apart(&reference.run);
         Ok(Self::new(planner.log, None, achieved, reference))
@@ -124,6 +126,7 @@ impl Plan {
                 duration: scene.duration,
                 way,
                 log: Vec::new(),
+                last: HashMap::new(),
             };
             let achieved = match check::run(scene, &mut planner) {
                 Ok(run) => run.apart(&reference.run),
@@ -163,16 +166,14 @@ impl Plan {
         }
     }
 
-    /// What chooses as planned, in the same order.
+    /// What chooses as planned.
     pub fn chooser(&self) -> impl Choose {
-        Replay {
-            choices: self
-                .intervals
-                .iter()
-                .map(|planned| planned.choice)
+        let planned = self.intervals.iter();
+        Replay(
+            planned
+                .map(|planned| (place(&planned.members, planned.from), planned.choice))
                 .collect(),
-            next: 0,
-        }
+        )
     }
 }
 
@@ -192,17 +193,25 @@ fn rounded_up(x: f64) -> f64 {
     (x / unit).ceil() * unit
 }
 
-struct Replay {
-    choices: Vec<Choice>,
-    next: usize,
+/// Where an interval begins: with whom, and when.
+type Place = (usize, u64);
+
+fn place(members: &Range<usize>, from: f64) -> Place {
+    (members.start, from.to_bits())
 }
+
+struct Replay(HashMap<Place, Choice>);
 
 impl Choose for Replay {
     fn choose(&mut self, setting: &Setting<'_>) -> Choice {
-        let choice = self.choices.get(self.next).copied();
-        self.next += 1;
-        // A scene asks for as many choices as it did when it was planned.
-        choice.unwrap_or_else(|| truest(setting.interval, 0))
+        let choice = self.0.get(&place(&setting.members, setting.from));
+        let taken = choice.filter(|choice| {
+            let info = choice.method.info();
+            (info.refuses(&setting.interval.load, &setting.interval.inertial)).is_none()
+        });
+        // Intervals begin where they began when the scene was planned, but for a click so near an edge
+        // that it hits by one way and not by another: then the truest there is.
+        taken.map_or_else(|| truest(setting.interval, 0), |&choice| choice)
     }
 }
 
@@ -221,6 +230,8 @@ struct Planner {
     duration: f64,
     way: Way,
     log: Vec<Planned>,
+    /// By first body of a group: its last interval in the log.
+    last: HashMap<usize, usize>,
 }
 
 impl Choose for Planner {
@@ -237,6 +248,11 @@ impl Choose for Planner {
             }
             Kind::Adaptive | Kind::Closed => None,
         };
+        // A click that hits ends an interval before it was to end.
+        let last = self.last.insert(setting.members.start, self.log.len());
+        if let Some(before) = last.and_then(|last| self.log.get_mut(last)) {
+            before.until = before.until.min(setting.from);
+        }
         self.log.push(Planned {
             members: setting.members.clone(),
             from: setting.from,

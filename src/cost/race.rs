@@ -6,7 +6,7 @@ use super::ladder::refusal;
 use super::reference::truest;
 use crate::integrator::{Kind, Method};
 use crate::math::angle_between;
-use crate::scene::{Action, Framed, Scene};
+use crate::scene::{Action, Event, Framed, Scene, Target};
 use crate::sim::{Choice, Choose, Setting, SimError, Simulation};
 use crate::trace::{Instant, Note, Sample, Sink, SinkError, Track};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -35,7 +35,15 @@ impl Race {
     ) -> Result<Self, SimError> {
         let mut alone = scene.clone();
         alone.bodies.truncate(1);
-        alone.events.retain(|event| event.body == 0);
+        alone.events.retain(|event| match &event.target {
+            Target::Body(body) | Target::Log(Some(body)) => *body == 0,
+            Target::Hit(_) | Target::All | Target::Log(None) => true,
+        });
+        for event in &mut alone.events {
+            if let Target::Hit(bodies) = &mut event.target {
+                *bodies = 0..1;
+            }
+        }
         alone.step = step.min(scene.duration);
         let mut runners = vec![None];
         let mut lost = Vec::new();
@@ -102,18 +110,36 @@ fn lined_up(alone: &Scene, runners: &[Option<Choice>], apart: f64) -> Scene {
             body.position_w += shift_w;
             scene.bodies.push(body);
         }
-        for event in &alone.events {
-            let mut event = event.clone();
-            event.body = k;
-            if let Action::Push { point, .. } | Action::Impulse { point, .. } = &mut event.action
-                && let Framed::World(p) = point
-            {
-                *p += shift_w;
-            }
-            scene.events.push(event);
-        }
+        let events = alone.events.iter().cloned();
+        scene
+            .events
+            .extend(events.filter_map(|event| of_runner(event, k, shift_w)));
     }
     scene
+}
+
+/// An event as it happens to the k-th runner; what happens to all happens with the first.
+fn of_runner(mut event: Event, k: usize, shift_w: Vector3<f64>) -> Option<Event> {
+    event.target = match event.target {
+        Target::Body(_) => Target::Body(k),
+        Target::Hit(_) => Target::Hit(k..k + 1),
+        target => return (k == 0).then_some(Event { target, ..event }),
+    };
+    match &mut event.action {
+        Action::Push { point, .. } | Action::Impulse { point, .. } => {
+            if let Framed::World(p) = point {
+                *p += shift_w;
+            }
+        }
+        Action::Click(click) => click.ray_w.origin += shift_w,
+        Action::Set(change) => {
+            if let Some(p) = &mut change.position_w {
+                *p += shift_w;
+            }
+        }
+        _ => {}
+    }
+    Some(event)
 }
 
 struct ByBody<'a>(&'a [Option<Choice>]);

@@ -21,6 +21,10 @@ impl Effect for Couple {
         wrench.add_torque(self.lane, tau_w);
     }
 
+    fn lane(&self) -> Option<usize> {
+        Some(self.lane)
+    }
+
     fn terms(&self, _: &InertialBlock) -> Option<Vec<Term>> {
         Some(vec![Term::Torque {
             lane: self.lane,

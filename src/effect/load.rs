@@ -147,6 +147,28 @@ impl Load {
         each.collect()
     }
 
+    /// What acts on one lane: not what events do to its neighbours.
+    fn on_lane(&self, lane: usize) -> impl Iterator<Item = &Arc<dyn Effect>> {
+        let own = move |effect: &&Arc<dyn Effect>| effect.lane().is_none_or(|only| only == lane);
+        self.effects.iter().filter(own)
+    }
+
+    /// Whether what is applied to a body changes with time by itself, whatever the body does.
+    pub fn changes_with_time(&self, lane: usize, inertial: &InertialBlock) -> bool {
+        self.on_lane(lane)
+            .any(|effect| effect.depends(inertial).time)
+    }
+
+    /// What acts on one lane as constant forces and torques, where it is nothing else.
+    pub fn terms_of(&self, lane: usize, inertial: &InertialBlock) -> Option<Vec<Term>> {
+        let mut own = Vec::new();
+        for effect in self.on_lane(lane) {
+            let terms = effect.terms(inertial)?.into_iter();
+            own.extend(terms.filter(|term| term.lane() == lane));
+        }
+        Some(own)
+    }
+
     /// All effects as constant forces and torques, where they are nothing else.
     pub fn terms(&self, inertial: &InertialBlock) -> Option<Vec<Term>> {
         let each = self.effects.iter().map(|effect| effect.terms(inertial));

@@ -8,12 +8,14 @@ mod damping;
 mod gravity;
 mod gyroscopic;
 mod load;
+mod pulse;
 mod push;
 mod term;
 
 pub use couple::Couple;
 pub use damping::{Decay, Elapsed};
 pub use load::{Frame, Load, Wrench, WrenchBlock};
+pub use pulse::{PROFILES, Profile, Pulse, Pulsed};
 pub use push::Push;
 pub use term::{Depends, Term};
 
@@ -35,6 +37,11 @@ pub trait Effect: Debug + Send + Sync {
     /// methods with recurrences of their own take it from.
     fn terms(&self, inertial: &InertialBlock) -> Option<Vec<Term>> {
         let _ = inertial;
+        None
+    }
+
+    /// The only lane of the block it acts on, where it is an event's; `None` is any.
+    fn lane(&self) -> Option<usize> {
         None
     }
 

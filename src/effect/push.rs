@@ -25,6 +25,10 @@ impl Effect for Push {
         wrench.add(self.lane, force_w, arm_w.cross(&force_w));
     }
 
+    fn lane(&self) -> Option<usize> {
+        Some(self.lane)
+    }
+
     fn terms(&self, _: &InertialBlock) -> Option<Vec<Term>> {
         Some(vec![Term::Force {
             lane: self.lane,

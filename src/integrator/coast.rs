@@ -21,26 +21,20 @@ pub fn coasting(load: &Load, inertial: &InertialBlock) -> [Option<Vector3<f64>>;
     if !load.applies() {
         return [Some(Vector3::zeros()); LANES];
     }
-    let Some(terms) = load.terms(inertial) else {
-        return [None; LANES];
-    };
-    let mut accelerations = [Some(Vector3::zeros()); LANES];
-    for term in terms {
-        let lane = term.lane();
-        accelerations[lane] = match (accelerations[lane], term) {
-            (
-                Some(sum),
+    std::array::from_fn(|lane| {
+        let inv_mass = inertial.get(lane).inv_mass;
+        let mut sum = Vector3::zeros();
+        for term in load.terms_of(lane, inertial)? {
+            match term {
                 Term::Force {
                     force: Frame::World(force_w),
                     ..
-                },
-            ) if term.depends() == Depends::NOTHING => {
-                Some(sum + force_w * inertial.get(lane).inv_mass)
+                } if term.depends() == Depends::NOTHING => sum += force_w * inv_mass,
+                _ => return None,
             }
-            _ => None,
-        };
-    }
-    accelerations
+        }
+        Some(sum)
+    })
 }
 
 /// The accelerations (m/s²) of the bodies of a block on which nothing acts but forces that are constant.

@@ -9,6 +9,7 @@
 //!
 //! What two parts share counts twice.
 
+use super::ray::{Hit, Ray, nearest};
 use super::solids::{NamedPoint, Placed, Solid, Surface};
 use super::tensor::{parallel_axis, turned};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
@@ -118,6 +119,13 @@ impl Solid for Compound {
             }
         }
         points
+    }
+
+    fn ray(&self, ray: &Ray) -> Option<Hit> {
+        let meets = |part: &Part| {
+            ray.meets_placed(part.position, part.orientation, |ray| part.solid.ray(ray))
+        };
+        nearest(self.parts.iter().filter_map(meets))
     }
 
     fn surface(&self) -> Surface {

@@ -2,7 +2,7 @@
 
 use super::scale::Scales;
 use crate::cost::Cost;
-use crate::scene::{Action, Scene};
+use crate::scene::Scene;
 use crate::sim::Simulation;
 use crate::trace::StreamSet;
 
@@ -34,8 +34,6 @@ impl Heading {
             .iter()
             .map(|event| event.action.lasts())
             .filter(|&s| s > 0.0);
-        let is_push = |action: &Action| matches!(action, Action::Push { .. });
-        let is_impulse = |action: &Action| matches!(action, Action::Impulse { .. });
         Self {
             title: scene.title.clone(),
             notes: scene.notes.clone(),
@@ -43,8 +41,8 @@ impl Heading {
             duration: scene.duration,
             rate: scene.record.rate,
             shortest_event: lasting.min_by(f64::total_cmp),
-            has_pushes: scene.events.iter().any(|event| is_push(&event.action)),
-            has_impulses: scene.events.iter().any(|event| is_impulse(&event.action)),
+            has_pushes: scene.events.iter().any(|event| event.action.pushes()),
+            has_impulses: scene.events.iter().any(|event| event.action.strikes()),
             streams: scene.record.streams,
             price: None,
             scales: Scales::new(simulation.subjects(), &simulation.expected()),

@@ -1,10 +1,10 @@
 //! Surfaces as triangle meshes with normals, striped so that every turn is seen.
 
 use super::look::{self, Colour};
+use crate::mass::equivalent;
 use crate::mass::solids::{Placed, ProfilePoint, Surface, Triangles};
-use crate::math::symmetric_eigen;
 use crate::trace::Subject;
-use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use rerun::archetypes::Mesh3D;
 
 /// Pieces round the axis, and stripes among them: a cone that spins about its own axis would
@@ -31,12 +31,16 @@ pub fn lowest(subject: &Subject) -> f64 {
 }
 
 fn faces(subject: &Subject, colour: Colour) -> Faces {
-    let (surface, shift) = match &subject.solid {
-        Some(solid) => (solid.surface(), -solid.centre()),
-        None => (Surface::Cuboid(equivalent_box(subject)), Vector3::zeros()),
+    let (surface, shift, turn) = match &subject.solid {
+        Some(solid) => (solid.surface(), -solid.centre(), UnitQuaternion::identity()),
+        None => {
+            let (extents, turn) = equivalent_box(subject);
+            (Surface::Cuboid(extents), Vector3::zeros(), turn)
+        }
     };
     let mut faces = Faces {
         shift,
+        turn,
         ..Faces::default()
     };
     faces.surface(&surface, colour);
@@ -46,7 +50,7 @@ fn faces(subject: &Subject, colour: Colour) -> Faces {
 /// The distance from the centre of mass to the farthest point, m.
 pub fn radius(subject: &Subject) -> f64 {
     match &subject.solid {
-        None => 0.5 * equivalent_box(subject).norm(),
+        None => 0.5 * equivalent_box(subject).0.norm(),
         Some(solid) => reach(&solid.surface(), solid.centre()),
     }
 }
@@ -76,23 +80,16 @@ fn reach(surface: &Surface, from: Vector3<f64>) -> f64 {
     }
 }
 
-/// The ellipsoid of uniform density with the body's mass and inertia about its centre of mass:
-/// half axes `a_i² = 5/(2m) (I_j + I_k - I_i)`, and its attitude in the body.
+/// The ellipsoid of the same mass and inertia: half axes, and its attitude in the body.
 pub fn equivalent_ellipsoid(subject: &Subject) -> Option<(Vector3<f64>, UnitQuaternion<f64>)> {
     let mass = subject.mass?;
-    let (axes, moments) = symmetric_eigen(&subject.inertia_c);
-    let squares = moments.map(|i| 2.5 / mass * (moments.sum() - 2.0 * i));
-    let rotation = Rotation3::from_matrix_unchecked(axes);
-    let half = squares.map(|square| square.max(0.0).sqrt());
-    Some((half, UnitQuaternion::from_rotation_matrix(&rotation)))
+    Some(equivalent::ellipsoid(mass, &subject.inertia_c))
 }
 
-/// Full extents of the cuboid of the same inertia, for a body without a shape: the ellipsoid's
-/// half axes times `2 √(3/5)`; a cube of half a metre where the mass is infinite.
-fn equivalent_box(subject: &Subject) -> Vector3<f64> {
-    equivalent_ellipsoid(subject).map_or(Vector3::repeat(0.5), |(half, _)| {
-        half * (2.0 * 0.6_f64.sqrt())
-    })
+/// Full extents of the cuboid of the same inertia, for a body without a shape, and its attitude in
+/// the body.
+fn equivalent_box(subject: &Subject) -> (Vector3<f64>, UnitQuaternion<f64>) {
+    equivalent::cuboid(subject.mass, &subject.inertia_c)
 }
 
 #[derive(Default)]

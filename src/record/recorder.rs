@@ -169,30 +169,36 @@ impl Sink for Recorder {
     }
 
     fn note(&mut self, at: Instant, note: &Note) -> Result<(), SinkError> {
-        let (level, colour) = match note.kind {
-            NoteKind::Failure => (TextLogLevel::ERROR, look::FORCE),
-            _ => (
-                TextLogLevel::INFO,
-                look::BODIES[note.body % look::BODIES.len()],
-            ),
+        let (level, colour) = match (note.kind, note.body) {
+            (NoteKind::Failure, _) => (TextLogLevel::ERROR, look::FORCE),
+            (_, Some(body)) => (TextLogLevel::INFO, look::BODIES[body % look::BODIES.len()]),
+            (_, None) => (TextLogLevel::INFO, look::NAME),
         };
         let line = TextLog::new(note.text.as_str())
             .with_level(level)
             .with_color(Color::from(colour));
         let when = timepoint(at);
-        let subject = &self.bodies[note.body].subject;
-        if let (Some(impulses), Some(strike)) = (&mut self.impulses, note.strike) {
+        let subject = note.body.map(|body| &self.bodies[body].subject);
+        if let (Some(impulses), Some(strike), Some(subject)) =
+            (&mut self.impulses, note.strike, subject)
+        {
             impulses.strike(&mut self.file, (at, when.clone()), subject, strike)?;
         }
-        let lane = format!("/events/{}", subject.name);
         let state = match note.kind {
             NoteKind::Begins => StateChange::single("acts"),
             NoteKind::Instant => StateChange::single("struck"),
+            NoteKind::Set => StateChange::single("set"),
             NoteKind::Failure => StateChange::single("not finite"),
             NoteKind::Ends => StateChange::new().with_state([""]),
+            // The lane of the log itself: its notes, one after the other, along the whole scene.
+            NoteKind::Remark => StateChange::single(note.text.as_str()),
         };
         self.file
             .row(Store::Recording, "/events", when.clone(), &[&line])?;
+        let lane = match (note.kind, subject) {
+            (NoteKind::Remark, _) | (_, None) => "/events".to_owned(),
+            (_, Some(subject)) => format!("/events/{}", subject.name),
+        };
         self.file.row(Store::Recording, lane, when, &[&state])?;
         Ok(())
     }

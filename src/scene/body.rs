@@ -222,13 +222,17 @@ fn one(table: &Table<'_>, context: Context<'_>, problems: &mut Problems) -> Opti
 }
 
 /// Bytes of a name, and of a label: what a picture can show.
-const LONGEST_NAME: usize = 64;
+pub(super) const LONGEST_NAME: usize = 64;
 
 /// Names become paths of the recording, so they hold nothing that a path would read otherwise.
+pub(super) fn is_name(name: &str) -> bool {
+    let plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    !name.is_empty() && name.len() <= LONGEST_NAME && name.chars().all(plain)
+}
+
 pub(super) fn name<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
     let name = node.str(problems)?;
-    let plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-    if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(plain) {
+    if !is_name(name) {
         node.problem(
             format!("is no name: it may hold up to {LONGEST_NAME} letters, digits, - and _ (a label may hold anything)"),
             problems,
@@ -596,9 +600,16 @@ pub(super) fn orientation(
     table: &Table<'_>,
     problems: &mut Problems,
 ) -> Option<UnitQuaternion<f64>> {
-    let Some(node) = table.get("orientation") else {
-        return Some(UnitQuaternion::identity());
-    };
+    match table.get("orientation") {
+        Some(node) => orientation_of(node, problems),
+        None => Some(UnitQuaternion::identity()),
+    }
+}
+
+pub(super) fn orientation_of(
+    node: Node<'_>,
+    problems: &mut Problems,
+) -> Option<UnitQuaternion<f64>> {
     if !node.is_table() {
         let [x, y, z, w] = node.numbers::<4>("a quaternion x, y, z, w, body to world", problems)?;
         let largest = [x, y, z, w]

@@ -10,13 +10,14 @@ mod inertia;
 mod inertial;
 mod pairing;
 mod parts;
+pub mod pick;
 mod problem;
 mod read;
 mod swarm;
 mod table;
 
 pub use body::Body;
-pub use event::{Action, Event, Framed};
+pub use event::{Action, Change, Click, Event, Framed, Target};
 pub use files::{Enclosure, Folder, Library};
 pub(crate) use pairing::lasting;
 pub use problem::Problems;
@@ -137,6 +138,11 @@ impl Scene {
     /// reason, one that was given another method may.
     pub fn refusal(&self) -> Option<String> {
         pairing::refusal(self)
+    }
+
+    /// Which of the effects are on as the scene starts, in their order.
+    pub fn on_at_start(&self) -> Vec<bool> {
+        vec![true; self.effects.len()]
     }
 
     /// Checks the text of a scene that names no other files; `file` is how messages call it.

@@ -2,9 +2,11 @@
 
 use super::problem::Problems;
 use super::table::Table;
-use super::{Body, Event, Scene, Stepping};
+use super::{Action, Body, Scene, Stepping, Target};
 use crate::body::{Inertial, InertialBlock};
 use crate::effect::{Called, Load};
+use nalgebra::Vector3;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// Why a scene's method does not take it, and which event it is, if it is one.
@@ -25,7 +27,8 @@ pub(super) fn check(scene: &Scene, top: &Table<'_>, problems: &mut Problems) {
         .table("stepping", problems)
         .and_then(|t| t.get("method"));
     for Unpaired { why, event } in unpaired {
-        let table = event.and_then(|k| events.get(k));
+        let entry = event.and_then(|k| scene.events.get(k)).map(|e| e.entry);
+        let table = entry.and_then(|entry| events.get(entry));
         let span = match table {
             Some(table) => table.span().clone(),
             None => named.as_ref().map_or(0..0, |node| node.span.clone()),
@@ -45,19 +48,15 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
         return Vec::new();
     };
     let mut found = Vec::new();
-    // By body, once and for all: both may be many.
-    let mut events: Vec<usize> = (0..scene.events.len()).collect();
-    events.sort_by_key(|&index| scene.events[index].body);
-    let mut events = events.as_slice();
+    let times = Times::of(scene);
+    let events = lasting_events(scene, &times);
     // Of bodies alike one after another, as a swarm has them, what is true of one is true of all.
     let mut before: Option<(&Body, bool)> = None;
     for (k, body) in scene.bodies.iter().enumerate() {
-        let own = events.partition_point(|&index| scene.events[index].body <= k);
-        let (own, rest) = events.split_at(own);
-        events = rest;
+        let own = events.of_bodies.get(&k);
         let known = before.filter(|(other, _)| are_alike(other, body));
         if let Some((_, refused)) = known
-            && (refused || own.is_empty())
+            && (refused || own.is_none())
         {
             continue;
         }
@@ -66,22 +65,35 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
         let mut block = InertialBlock::default();
         block.set(0, inertial);
         let refuses = |load: Load| method.info().refuses(&load, &block);
-        if let Some(refusal) = refuses(lasting(scene)) {
-            let why = format!("{}: {refusal}", body.name);
-            found.push(Unpaired { why, event: None });
+        let refused = times.sets.iter().find_map(|set| {
+            let refusal = refuses(lasting(scene, &set.on))?;
+            Some((set.by, refusal))
+        });
+        if let Some((by, refusal)) = refused {
+            let why = match by {
+                None => format!("{}: {refusal}", body.name),
+                Some(_) => format!("after a switch, {}: {refusal}", body.name),
+            };
+            found.push(Unpaired { why, event: by });
             before = Some((body, true));
             continue;
         }
-        for &index in own {
+        let own = own.into_iter().flatten();
+        for &(index, set) in own.chain(&events.clicks) {
             let event = &scene.events[index];
-            let mut load = lasting(scene);
+            let event = match &event.action {
+                // Wherever it hits: not at the centre of mass, where a force turns nothing.
+                Action::Click(click) => &event.on(k, click.at(Vector3::x())),
+                _ => event,
+            };
+            let mut load = lasting(scene, &times.sets[set].on);
             if let Some(effect) = event.effect(0, &inertial, q_bp.inverse()) {
                 load.push(effect);
             }
             if let Some(refusal) = refuses(load) {
-                let why = reason(body, event, &refusal.0);
+                let noun = scene.events[index].action.noun();
                 found.push(Unpaired {
-                    why,
+                    why: reason(body, noun, &refusal.0),
                     event: Some(index),
                 });
             }
@@ -95,15 +107,101 @@ fn are_alike(a: &Body, b: &Body) -> bool {
     a.properties == b.properties && a.pivot_b == b.pivot_b
 }
 
-fn reason(body: &Body, event: &Event, why: &str) -> String {
-    let what = event.action.noun();
-    format!("a {what} on {}: {why}", body.name)
+fn reason(body: &Body, noun: &str, why: &str) -> String {
+    format!("a {noun} on {}: {why}", body.name)
 }
 
-/// What acts on every body as long as the scene lasts.
-pub(crate) fn lasting(scene: &Scene) -> Load {
+/// Effects that are on together.
+struct Set {
+    on: Vec<bool>,
+    /// The event that first made it so.
+    by: Option<usize>,
+}
+
+/// Which effects are on, when.
+struct Times {
+    /// Every set there is, once.
+    sets: Vec<Set>,
+    /// From when on (s) which of them, in order of time.
+    periods: Vec<(f64, usize)>,
+}
+
+impl Times {
+    fn of(scene: &Scene) -> Self {
+        let events = scene.events.iter().enumerate();
+        let mut switches: Vec<(usize, f64, usize, bool)> = events
+            .filter_map(|(k, event)| match event.action {
+                Action::Switch { effect, on } => Some((k, event.at, effect, on)),
+                _ => None,
+            })
+            .collect();
+        switches.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let mut on = scene.on_at_start();
+        let mut times = Self {
+            sets: Vec::new(),
+            periods: Vec::new(),
+        };
+        let mut known = HashMap::new();
+        let mut begins = |from: f64, on: &[bool], by: Option<usize>| {
+            let set = *known.entry(on.to_vec()).or_insert(times.sets.len());
+            if set == times.sets.len() {
+                let on = on.to_vec();
+                times.sets.push(Set { on, by });
+            }
+            times.periods.push((from, set));
+        };
+        if switches.first().is_none_or(|switch| switch.1 > 0.0) {
+            begins(0.0, &on, None);
+        }
+        for together in switches.chunk_by(|a, b| a.1 == b.1) {
+            for &(_, _, effect, to) in together {
+                on[effect] = to;
+            }
+            begins(together[0].1, &on, Some(together[0].0));
+        }
+        times
+    }
+}
+
+/// Events that last, by index, each beside a set of effects beside which it acts.
+#[derive(Default)]
+struct Lasting {
+    of_bodies: HashMap<usize, Vec<(usize, usize)>>,
+    clicks: Vec<(usize, usize)>,
+}
+
+/// One event of every entry of the file beside every set of effects: its repeats are alike.
+fn lasting_events(scene: &Scene, times: &Times) -> Lasting {
+    let mut found = Lasting::default();
+    let mut seen: HashMap<(usize, &Target), HashSet<usize>> = HashMap::new();
+    for (k, event) in scene.events.iter().enumerate() {
+        let lasts = event.action.lasts();
+        if lasts == 0.0 {
+            continue;
+        }
+        let seen = seen.entry((event.entry, &event.target)).or_default();
+        if seen.len() == times.sets.len() {
+            continue;
+        }
+        let begins = times.periods.partition_point(|(from, _)| *from <= event.at);
+        let during = times.periods[begins.saturating_sub(1)..].iter();
+        let during = during.take_while(|(from, _)| *from < event.at + lasts);
+        for &(_, set) in during {
+            if seen.insert(set) {
+                match event.target {
+                    Target::Body(body) => found.of_bodies.entry(body).or_default().push((k, set)),
+                    _ => found.clicks.push((k, set)),
+                }
+            }
+        }
+    }
+    found
+}
+
+/// What acts on every body besides events, of the effects that are on.
+pub(crate) fn lasting(scene: &Scene, on: &[bool]) -> Load {
     let mut load = Load::default();
-    for (_, effect) in &scene.effects {
+    for ((_, effect), _) in scene.effects.iter().zip(on).filter(|(_, on)| **on) {
         match effect {
             Called::Load(effect) => load.push(Arc::clone(effect)),
             Called::Decay(decay) => load.set_decay(*decay),

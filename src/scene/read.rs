@@ -104,8 +104,12 @@ fn read(
             problems.add(top.span(), message);
         }
     }
-    let clock = event::Clock { duration, step };
-    let events = event::read_all(&events, &bodies, clock, problems);
+    let context = event::Context {
+        bodies: &bodies,
+        effects: &effects,
+        clock: event::Clock { duration, step },
+    };
+    let events = event::read_all(&events, &context, problems);
     let scene = Scene {
         name: name.to_owned(),
         title: title.replace(char::is_control, " "),

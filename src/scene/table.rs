@@ -175,6 +175,10 @@ impl<'d> Node<'d> {
         self.value.is_table()
     }
 
+    pub fn is_empty_table(&self) -> bool {
+        self.value.as_table().is_some_and(|table| table.is_empty())
+    }
+
     pub fn array_length(&self) -> Option<usize> {
         Some(self.value.as_array()?.len())
     }

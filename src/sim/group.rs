@@ -2,12 +2,13 @@
 
 use super::Jump;
 use super::choose::{Choose, Setting};
+use super::script::{Acting, Own};
 use super::sources::Parts;
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
-use crate::effect::{Frame, Load, Push, Term, WrenchBlock};
+use crate::effect::{Frame, Load, Pulse, Push, Term, WrenchBlock};
 use crate::integrator::{Interval, Kind, Method, Refusal, Step, Stepper, Work};
 use crate::mass::tensor;
-use crate::scene::{Body, Event, Framed, Scene, lasting};
+use crate::scene::{Body, Change, Event, Framed, Scene, lasting};
 use crate::trace::{Deviation, Motion, PointForce, Sample, Subject};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
@@ -19,8 +20,8 @@ pub struct Group {
     inertial: InertialBlock,
     state: StateBlock,
     load: Load,
-    /// The pushes in `load`, for the force arrows.
-    pushes: Vec<Push>,
+    /// The pushes in `load` at their peaks, for the force arrows.
+    pushes: Vec<(Push, Pulse)>,
     /// What is told apart of what turns each lane, by name.
     sources: Vec<Vec<String>>,
     /// Body axes → principal axes of each lane.
@@ -93,9 +94,9 @@ pub fn groups(bodies: &[Body], width: usize) -> Vec<Group> {
 }
 
 impl Group {
-    fn new(members: Range<usize>, bodies: &[Body]) -> Self {
-        let mut group = Self {
-            members,
+    fn empty() -> Self {
+        Self {
+            members: 0..0,
             inertial: InertialBlock::default(),
             state: StateBlock::default(),
             load: Load::default(),
@@ -108,6 +109,13 @@ impl Group {
             method: "",
             steps: None,
             done: Work::default(),
+        }
+    }
+
+    fn new(members: Range<usize>, bodies: &[Body]) -> Self {
+        let mut group = Self {
+            members,
+            ..Self::empty()
         };
         for (lane, body) in bodies.iter().enumerate() {
             let (inertial, q_bp) = Inertial::new(&body.properties, body.pivot_b);
@@ -156,7 +164,7 @@ impl Group {
         if self.load.decay().is_some() || !self.load.gyroscopic() {
             return None;
         }
-        let terms = self.load.terms(&self.inertial)?;
+        let terms = self.load.terms_of(lane, &self.inertial)?;
         let q_bp = self.q_pb[lane].inverse();
         let weight = |term: Term| match term {
             Term::Force {
@@ -169,8 +177,7 @@ impl Group {
             }),
             _ => None,
         };
-        let own = terms.into_iter().filter(|term| term.lane() == lane);
-        own.map(weight).collect()
+        terms.into_iter().map(weight).collect()
     }
 
     /// Takes a stretch of steps. Where a body's state is lost it stops after that step: how many
@@ -250,18 +257,20 @@ impl Group {
         self.done + now.unwrap_or_default()
     }
 
-    /// The effects of the scene and the active events that concern this group.
-    pub fn load(&mut self, scene: &Scene, active: &[usize]) {
-        self.load = lasting(scene);
+    /// The effects of the scene that are on, and the active events that concern this group.
+    pub fn load(&mut self, scene: &Scene, acting: &Acting) {
+        self.load = lasting(scene, &acting.on);
         self.pushes.clear();
-        for event in active.iter().map(|&k| &scene.events[k]) {
-            if !self.members.contains(&event.body) {
+        for acting in &acting.events {
+            if !self.members.contains(&acting.body) {
                 continue;
             }
-            let lane = event.body - self.members.start;
+            let lane = acting.body - self.members.start;
             let (inertial, q_pb) = (self.inertial.get(lane), self.q_pb[lane]);
-            self.pushes.extend(event.push(lane, &inertial, q_pb));
-            if let Some(effect) = event.effect(lane, &inertial, q_pb) {
+            let push = acting.event.push(lane, &inertial, q_pb);
+            let pulse = acting.event.pulse();
+            self.pushes.extend(push.map(|push| (push, pulse)));
+            if let Some(effect) = acting.event.effect(lane, &inertial, q_pb) {
                 self.load.push(effect);
             }
         }
@@ -272,15 +281,53 @@ impl Group {
         self.sources = subjects.iter().map(|s| s.sources.clone()).collect();
     }
 
-    /// The torque about the reference point that an event applies by itself, world, N·m.
-    pub fn torque_of(&self, event: &Event) -> Vector3<f64> {
-        let lane = event.body - self.members.start;
-        let Some(effect) = event.effect(lane, &self.inertial.get(lane), self.q_pb[lane]) else {
-            return Vector3::zeros();
-        };
+    /// What an event on a body applies by itself, at its peak.
+    pub fn own(&self, body: usize, event: &Event) -> Own {
+        let lane = body - self.members.start;
+        let (inertial, q_pb) = (self.inertial.get(lane), self.q_pb[lane]);
+        let peak = event.at_peak();
         let mut wrench = WrenchBlock::default();
-        effect.add(event.at, &self.inertial, &self.state, &mut wrench);
-        wrench.get(lane).tau_w
+        if let Some(effect) = peak.effect(lane, &inertial, q_pb) {
+            effect.add(event.at, &self.inertial, &self.state, &mut wrench);
+        }
+        let state = self.state.get(lane);
+        let push = peak.push(lane, &inertial, q_pb);
+        Own {
+            tau_w: wrench.get(lane).tau_w,
+            push: push.map(|push| acting(&push, 1.0, &state)),
+        }
+    }
+
+    /// Makes parts of a body's state what a change says. What is held stays where it is held.
+    pub fn set(&mut self, body: usize, change: &Change) {
+        let lane = body - self.members.start;
+        let mut state = self.state.get(lane);
+        if let Some(position_w) = change.position_w {
+            state.x_w = position_w;
+        }
+        if let Some(velocity_w) = change.velocity_w {
+            state.v_w = velocity_w;
+        }
+        if let Some(q_wb) = change.q_wb {
+            state.q_wp = (q_wb * self.q_pb[lane].inverse()).into_inner();
+        }
+        if let Some(omega_w) = change.omega_w {
+            state.omega_w = omega_w;
+        }
+        self.state.set(lane, state);
+    }
+
+    /// A body as it is, alone in a group.
+    pub fn alone(&self, body: usize) -> Self {
+        let lane = body - self.members.start;
+        let mut alone = Self {
+            members: body..body + 1,
+            ..Self::empty()
+        };
+        alone.q_pb[0] = self.q_pb[lane];
+        alone.inertial.set(0, self.inertial.get(lane));
+        alone.state.set(0, self.state.get(lane));
+        alone
     }
 
     /// An impulse at a point (N·s) or, without one, an angular impulse (N·m·s):
@@ -317,6 +364,12 @@ impl Group {
         self.poses(&self.state)
     }
 
+    /// The same of one body.
+    pub fn motion_of(&self, body: usize) -> Motion {
+        let lane = body - self.members.start;
+        self.motion(lane, self.state.get(lane))
+    }
+
     /// The same of the `k`-th state kept of the last stretch.
     pub fn motions_kept(&self, k: usize) -> impl Iterator<Item = Motion> + '_ {
         self.poses(&self.kept[k])
@@ -340,7 +393,7 @@ impl Group {
         let wrench = self.wrench(t, block);
         let parts = self.parts(t, block);
         (0..self.members.len())
-            .map(|lane| self.sample_of(lane, block.get(lane), &wrench, &parts))
+            .map(|lane| self.sample_of(lane, block.get(lane), (t, &wrench), &parts))
             .collect()
     }
 
@@ -349,7 +402,7 @@ impl Group {
         let wrench = self.wrench(t, &self.state);
         let parts = self.parts(t, &self.state);
         let lane = body - self.members.start;
-        self.sample_of(lane, self.state.get(lane), &wrench, &parts)
+        self.sample_of(lane, self.state.get(lane), (t, &wrench), &parts)
     }
 
     /// Each effect's own share, where any body wants to know it.
@@ -365,7 +418,13 @@ impl Group {
         wrench.unwrap_or_default()
     }
 
-    fn sample_of(&self, lane: usize, state: State, wrench: &WrenchBlock, parts: &Parts) -> Sample {
+    fn sample_of(
+        &self,
+        lane: usize,
+        state: State,
+        (t, wrench): (f64, &WrenchBlock),
+        parts: &Parts,
+    ) -> Sample {
         let inertial = self.inertial.get(lane);
         let mut tau_w = wrench.get(lane).tau_w;
         let mut alpha_w = match self.load.gyroscopic() {
@@ -376,12 +435,13 @@ impl Group {
             tau_w -= inertial.momentum_w(&state) * decay.angular_rate();
             alpha_w -= state.omega_w * decay.angular_rate();
         }
-        let pushes = self.pushes.iter().filter(|push| push.lane == lane);
+        let pushes = self.pushes.iter().filter(|(push, _)| push.lane == lane);
+        let pushes = pushes.map(|(push, pulse)| acting(push, pulse.part(t), &state));
         Sample {
             motion: self.motion(lane, state),
             tau_w,
             alpha_w,
-            pushes: pushes.map(|push| acting(push, &state)).collect(),
+            pushes: pushes.collect(),
             sources: self.sources.get(lane).map_or_else(Vec::new, |names| {
                 parts.torques(names, (&self.load, lane), &inertial, &state)
             }),
@@ -416,9 +476,10 @@ fn start(body: &Body, q_bp: UnitQuaternion<f64>) -> State {
     }
 }
 
-fn acting(push: &Push, state: &State) -> PointForce {
+/// A part of a push.
+fn acting(push: &Push, part: f64, state: &State) -> PointForce {
     PointForce {
-        force_w: push.force.vector_w(state),
+        force_w: push.force.vector_w(state) * part,
         point_w: push.point.point_w(state),
     }
 }

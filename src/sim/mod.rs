@@ -14,15 +14,17 @@ pub use sources::GYROSCOPIC;
 
 use crate::body::LANES;
 use crate::integrator::{Kind, Step, Work};
-use crate::scene::{Action, Event, Scene, Stepping};
+use crate::scene::pick::{self, Picked};
+use crate::scene::{Action, Click, Event, Scene, Stepping, Target};
 use crate::trace::{
     Instant, Motion, Note, NoteKind, PointForce, Sample, Sink, SinkError, Subject, Track, short,
 };
 use group::Group;
 use nalgebra::Vector3;
 use schedule::{Schedule, Stretch};
-use script::Happening;
+use script::{Acting, Applied, Done, Happening, Lasting};
 use std::cell::RefCell;
+use std::ops::Range;
 use truth::Truth;
 
 /// A scene being stepped.
@@ -32,8 +34,10 @@ pub struct Simulation<'s> {
     groups: Vec<Group>,
     /// Bodies in a group.
     width: usize,
-    /// Indices of the events that act now.
-    active: Vec<usize>,
+    acting: Acting,
+    /// The scene's notes by their times (s), and how many have been written.
+    notes: Vec<(f64, Note)>,
+    noted: usize,
     threads: usize,
     /// By body; none where no stream compares with the truth.
     truths: Vec<RefCell<Truth>>,
@@ -64,10 +68,13 @@ pub struct Blow {
     pub at: Instant,
     /// Index of the event.
     pub event: usize,
+    pub body: usize,
     /// Just after the event began, under everything that acts.
     pub sample: Sample,
-    /// What this event alone applies: the torque about the reference point, world, N·m.
+    /// What this event alone applies, at its peak: the torque about the reference point, world, N·m.
     pub tau_w: Vector3<f64>,
+    /// Of a push: its force at its peak, and where it acts.
+    pub push: Option<PointForce>,
     /// For an impulse.
     pub jump: Option<Jump>,
 }
@@ -123,7 +130,9 @@ impl<'s> Simulation<'s> {
             subjects: scene.bodies.iter().map(group::subject).collect(),
             groups: group::groups(&scene.bodies, width),
             width,
-            active: Vec::new(),
+            acting: Acting::at_start(scene),
+            notes: script::notes(scene),
+            noted: 0,
             threads: std::thread::available_parallelism().map_or(1, usize::from),
             truths: truths(scene),
             timed: scene.record.streams.contains("step_time"),
@@ -134,7 +143,7 @@ impl<'s> Simulation<'s> {
         }
         for group in &mut simulation.groups {
             group.watch(&simulation.subjects[group.members.clone()]);
-            group.load(scene, &[]);
+            group.load(scene, &simulation.acting);
         }
         simulation
     }
@@ -158,20 +167,61 @@ impl<'s> Simulation<'s> {
         for (subject, sample) in self.subjects.iter().zip(self.samples(0.0)) {
             sizes.count(subject, &sample, 0.0);
         }
-        for (k, event) in self.scene.events.iter().enumerate() {
-            let subject = &self.subjects[event.body];
-            let mut group = self.group_of(event.body).clone();
-            if let Some(strike) = begin(&mut group, self.scene, k).and_then(|jump| jump.strike) {
-                sizes.count_impulse(strike.force_w.norm());
+        let mut entry = None;
+        for event in &self.scene.events {
+            // Its repeats are alike.
+            if entry.replace((event.entry, &event.target)) != Some((event.entry, &event.target)) {
+                self.expect(event, &mut sizes);
             }
-            group.load(self.scene, &[k]);
-            sizes.count(
-                subject,
-                &group.sample(event.body, event.at),
-                event.action.lasts(),
-            );
         }
         sizes
+    }
+
+    /// Counts what an event makes of its body as the body starts.
+    fn expect(&self, event: &Event, sizes: &mut Sizes) {
+        let peak = event.at_peak();
+        match (&event.target, &event.action) {
+            (Target::Body(body), _) => self.expect_on(*body, peak, sizes),
+            (Target::Hit(bodies), Action::Click(click)) => match self.pick(bodies, click) {
+                Some((body, picked)) => {
+                    let event = peak.on(body, click.at(picked.point_b)).at_peak();
+                    self.expect_on(body, event, sizes);
+                }
+                None if click.lasts > 0.0 => sizes.count_force(click.force.abs()),
+                None => sizes.count_impulse(click.force.abs()),
+            },
+            (Target::All, Action::Switch { effect, on }) => {
+                let mut acting = self.acting.clone();
+                acting.on[*effect] = *on;
+                for group in &self.groups {
+                    let mut group = group.clone();
+                    group.load(self.scene, &acting);
+                    for (body, sample) in group.members.clone().zip(group.samples(event.at)) {
+                        sizes.count(&self.subjects[body], &sample, 0.0);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn expect_on(&self, body: usize, event: Event, sizes: &mut Sizes) {
+        let mut group = self.group_of(body).clone();
+        let (at, lasts) = (event.at, event.action.lasts());
+        if let Action::Set(change) = &event.action {
+            group.set(body, change);
+        }
+        if let Some(strike) = strike(&mut group, body, &event).and_then(|jump| jump.strike) {
+            sizes.count_impulse(strike.force_w.norm());
+        }
+        let mut acting = self.acting.clone();
+        acting.events.push(Lasting {
+            index: 0,
+            body,
+            event,
+        });
+        group.load(self.scene, &acting);
+        sizes.count(&self.subjects[body], &group.sample(body, at), lasts);
     }
 
     /// Steps the scene from its start to its end by the method that it states. The outcome tells
@@ -208,7 +258,9 @@ impl<'s> Simulation<'s> {
         sink: &mut dyn Sink,
     ) -> Result<(), SimError> {
         let start = schedule.now();
-        self.happen(start, &script::at_start(self.scene), outcome, sink)?;
+        self.write_notes(&[], start, start.time, sink)?;
+        let applied = self.apply(start, &script::at_start(self.scene), schedule);
+        self.log(start, &applied, outcome, sink)?;
         self.deliver_motions(start, sink)?;
         let all: Vec<usize> = (0..self.subjects.len()).collect();
         self.must_be_finite(start, &all, sink)?;
@@ -219,27 +271,38 @@ impl<'s> Simulation<'s> {
         loop {
             let first = schedule.now();
             let Some(stretch) = schedule.next_stretch() else {
+                self.write_notes(&[], first, f64::INFINITY, sink)?;
                 return Ok(());
             };
-            if let Some((at, body)) = self.stretch(&stretch, first, sink)? {
+            let lost = self.stretch(&stretch, first, sink)?;
+            let until = lost.map_or(schedule.now(), |(at, _)| at);
+            self.write_notes(&stretch.steps, first, until.time, sink)?;
+            if let Some((at, body)) = lost {
                 schedule.stop_at(at);
                 return Err(self.not_finite(at, body, sink));
             }
-            if stretch.happenings.is_empty() {
-                continue;
-            }
-            let now = schedule.now();
-            let touched = self.touched(&stretch.happenings);
-            if !stretch.kept.last().is_some_and(|last| last.display) {
+            if !stretch.happenings.is_empty() {
+                let now = schedule.now();
+                let shown = stretch.kept.last().is_some_and(|last| last.display);
+                let before = match shown {
+                    true => Vec::new(),
+                    false => self.before(now, &stretch.happenings),
+                };
+                let applied = self.apply(now, &stretch.happenings, schedule);
+                let touched = self.touched(&applied);
+                for (body, sample) in &before {
+                    if touched.binary_search(body).is_ok() {
+                        let sample = std::slice::from_ref(sample);
+                        sink.samples(now, *body..body + 1, sample)?;
+                    }
+                }
+                if self.log(now, &applied, outcome, sink)? {
+                    self.deliver_motions(now, sink)?;
+                }
                 self.deliver_bodies(now, &touched, sink)?;
+                self.must_be_finite(now, &touched, sink)?;
+                self.set_out(&touched, schedule, chooser);
             }
-            let jumped = self.happen(now, &stretch.happenings, outcome, sink)?;
-            if jumped {
-                self.deliver_motions(now, sink)?;
-            }
-            self.deliver_bodies(now, &touched, sink)?;
-            self.must_be_finite(now, &touched, sink)?;
-            self.set_out(&touched, schedule, chooser);
         }
     }
 
@@ -251,8 +314,7 @@ impl<'s> Simulation<'s> {
         let now = schedule.now().time;
         for group in groups {
             let members = self.groups[group].members.clone();
-            let touches =
-                |happening: Happening| members.contains(&self.scene.events[happening.event()].body);
+            let touches = |happening| self.acting.touches(self.scene, happening, &members);
             let until = schedule.until(touches);
             self.groups[group].set_out(chooser, now, until);
         }
@@ -263,11 +325,12 @@ impl<'s> Simulation<'s> {
             let group = self.group_of(body);
             let sample = group.sample(body, now);
             let simulated = (&self.subjects[body], &sample, group, body);
-            let touches = |happening: Happening| self.scene.events[happening.event()].body == body;
+            let alone = body..body + 1;
+            let touches = |happening| self.acting.touches(self.scene, happening, &alone);
             let until = schedule.until(touches);
             truth
                 .borrow_mut()
-                .set_out((self.scene, &self.active), (now, until), simulated);
+                .set_out((self.scene, &self.acting), (now, until), simulated);
         }
     }
 
@@ -382,7 +445,7 @@ impl<'s> Simulation<'s> {
             cause: self.cause(body),
         };
         let note = Note {
-            body,
+            body: Some(body),
             text: error.to_string(),
             kind: NoteKind::Failure,
             strike: None,
@@ -414,64 +477,233 @@ impl<'s> Simulation<'s> {
         "a force, an impulse, a speed, a mass or a ratio of moments is too large or too small for 64-bit numbers, or for this method at this step; look at the events and the start".to_owned()
     }
 
-    /// Ends and begins events and writes the log; true where a velocity jumped.
-    fn happen(
+    /// Writes the notes up to a time (s), each at its own, counting the steps from `first` on.
+    fn write_notes(
+        &mut self,
+        steps: &[Step],
+        first: Instant,
+        until: f64,
+        sink: &mut dyn Sink,
+    ) -> Result<(), SinkError> {
+        while let Some((time, note)) = self.notes.get(self.noted)
+            && *time <= until
+        {
+            let taken = steps.partition_point(|step| step.to <= *time);
+            let at = Instant {
+                time: *time,
+                step: first.step + taken as u64,
+            };
+            sink.note(at, note)?;
+            self.noted += 1;
+        }
+        Ok(())
+    }
+
+    /// The bodies that some happenings may touch, as they are before.
+    fn before(&self, now: Instant, happenings: &[Happening]) -> Vec<(usize, Sample)> {
+        let mut bodies: Vec<usize> = Vec::new();
+        let event = |happening: &Happening| &self.scene.events[happening.event()];
+        let sets = |happening| matches!(event(happening).action, Action::Set(_));
+        let moved = happenings.iter().any(sets);
+        for happening in happenings {
+            let event = event(happening);
+            match (&event.target, happening, &event.action) {
+                (Target::Body(body), ..) => bodies.push(*body),
+                (Target::Hit(_), Happening::Ends(index), _) => {
+                    let acting = self.acting.events.iter();
+                    let hit = acting.filter(|acting| acting.index == *index);
+                    bodies.extend(hit.map(|acting| acting.body));
+                }
+                // Where nothing is set first, it is known whom a ray will hit.
+                (Target::Hit(range), _, Action::Click(click)) if !moved => {
+                    bodies.extend(self.pick(range, click).map(|(body, _)| body));
+                }
+                (Target::Hit(range), ..) => bodies.extend(range.clone()),
+                (Target::All, ..) => bodies.extend(0..self.subjects.len()),
+                (Target::Log(_), ..) => {}
+            }
+        }
+        bodies.sort_unstable();
+        bodies.dedup();
+        let sample = |body: usize| {
+            let mut sample = [self.group_of(body).sample(body, now.time)];
+            self.judge(body, &mut sample, now.time);
+            let [sample] = sample;
+            (body, sample)
+        };
+        bodies.into_iter().map(sample).collect()
+    }
+
+    /// Ends and begins events, in their order: what lasts is put among what acts, an instant is done at
+    /// once.
+    fn apply(
         &mut self,
         now: Instant,
         happenings: &[Happening],
+        schedule: &mut Schedule<'_>,
+    ) -> Vec<Applied> {
+        let mut all = Vec::with_capacity(happenings.len());
+        for &happening in happenings {
+            let index = happening.event();
+            let (picked, done) = match happening {
+                Happening::Ends(_) => (None, self.end(index)),
+                Happening::Begins(_) => self.begin(index, now.time),
+            };
+            if let Some(Done::Missed) = done {
+                schedule.cancel(Happening::Ends(index));
+            }
+            all.extend(done.map(|done| Applied {
+                index,
+                picked,
+                done,
+            }));
+        }
+        let mut groups = self.touched(&all);
+        groups.iter_mut().for_each(|body| *body /= self.width);
+        groups.dedup();
+        for group in groups {
+            self.groups[group].load(self.scene, &self.acting);
+        }
+        all
+    }
+
+    fn end(&mut self, index: usize) -> Option<Done> {
+        let events = &mut self.acting.events;
+        let acting = events.iter().position(|acting| acting.index == index)?;
+        Some(Done::Ended(events.remove(acting).body))
+    }
+
+    fn begin(&mut self, index: usize, at: f64) -> (Option<Picked>, Option<Done>) {
+        let event = &self.scene.events[index];
+        match (&event.target, &event.action) {
+            (Target::All, Action::Switch { effect, on }) => {
+                self.acting.on[*effect] = *on;
+                (None, Some(Done::Switched))
+            }
+            (Target::Body(body), Action::Set(change)) => {
+                let body = *body;
+                let group = &mut self.groups[body / self.width];
+                group.set(body, change);
+                let held = self.scene.bodies[body].pivot_b.is_some();
+                match self.truths.get_mut(body).map(RefCell::get_mut) {
+                    // What was lost is known again.
+                    Some(truth) if change.says_all(held) => truth.restart(group.alone(body), at),
+                    Some(truth) => truth.set(body, change, at),
+                    None => {}
+                }
+                (None, Some(Done::Set(body)))
+            }
+            (Target::Hit(bodies), Action::Click(click)) => match self.pick(bodies, click) {
+                None => (None, Some(Done::Missed)),
+                Some((body, picked)) => {
+                    let event = event.on(body, click.at(picked.point_b));
+                    (Some(picked), Some(self.act(index, body, event, at)))
+                }
+            },
+            (Target::Body(body), _) => {
+                let done = self.act(index, *body, event.clone(), at);
+                (None, Some(done))
+            }
+            _ => (None, None),
+        }
+    }
+
+    /// Strikes a body, or begins to push it.
+    fn act(&mut self, index: usize, body: usize, event: Event, at: f64) -> Done {
+        let group = &mut self.groups[body / self.width];
+        if let Some(jump) = strike(group, body, &event) {
+            if let Some(truth) = self.truths.get_mut(body) {
+                strike_truth(truth.get_mut(), body, &event, at);
+            }
+            return Done::Struck(body, jump);
+        }
+        let lasting = Lasting { index, body, event };
+        self.acting.events.push(lasting.clone());
+        Done::Begun(lasting)
+    }
+
+    /// The first of some bodies that a click's ray hits, as they are now.
+    fn pick(&self, bodies: &Range<usize>, click: &Click) -> Option<(usize, Picked)> {
+        let motion = |body: usize| self.group_of(body).motion_of(body);
+        let posed = bodies
+            .clone()
+            .map(|body| (&self.subjects[body], motion(body)));
+        let (k, picked) = pick::first_hit(&click.ray_w, posed)?;
+        Some((bodies.start + k, picked))
+    }
+
+    /// Writes the log; true where a state jumped.
+    fn log(
+        &self,
+        now: Instant,
+        applied: &[Applied],
         outcome: &mut Outcome,
         sink: &mut dyn Sink,
-    ) -> Result<bool, SimError> {
-        let mut jumps = vec![None; happenings.len()];
-        for (happening, jump) in happenings.iter().zip(&mut jumps) {
-            match *happening {
-                Happening::Ends(k) => self.active.retain(|&active| active != k),
-                Happening::Begins(k) => {
-                    let body = self.scene.events[k].body;
-                    *jump = begin(&mut self.groups[body / self.width], self.scene, k);
-                    if let (Some(_), Some(truth)) = (&jump, self.truths.get_mut(body)) {
-                        strike(truth.get_mut(), &self.scene.events[k], now.time);
-                    }
-                    if jump.is_none() {
-                        self.active.push(k);
-                    }
-                }
-            }
-        }
-        for body in self.touched(happenings) {
-            self.groups[body / self.width].load(self.scene, &self.active);
-        }
-        for (happening, &jump) in happenings.iter().zip(&jumps) {
-            let event = &self.scene.events[happening.event()];
-            let subject = &self.subjects[event.body];
-            let group = self.group_of(event.body);
-            let sample = group.sample(event.body, now.time);
-            let tau_w = group.torque_of(event);
-            let note = match *happening {
-                Happening::Ends(_) => script::end_note(event, subject, &sample),
-                Happening::Begins(k) => {
-                    let note = script::begin_note(event, subject, (tau_w, &sample), jump);
-                    outcome.blows.push(Blow {
-                        at: now,
-                        event: k,
-                        sample,
-                        tau_w,
-                        jump,
-                    });
+    ) -> Result<bool, SinkError> {
+        let mut jumped = false;
+        for Applied {
+            index,
+            picked,
+            done,
+        } in applied
+        {
+            let event = &self.scene.events[*index];
+            let picked = picked.as_ref();
+            let named = |body: usize| (body, &self.subjects[body]);
+            let mut blow = |body: usize, sample: Sample, own: script::Own, jump| {
+                outcome.blows.push(Blow {
+                    at: now,
+                    event: *index,
+                    body,
+                    sample,
+                    tau_w: own.tau_w,
+                    push: own.push,
+                    jump,
+                });
+            };
+            let note = match done {
+                Done::Begun(Lasting {
+                    body, event: acts, ..
+                }) => {
+                    let group = self.group_of(*body);
+                    let (own, sample) = (group.own(*body, acts), group.sample(*body, now.time));
+                    let note = script::begin_note((event, picked), named(*body), (&own, &sample));
+                    blow(*body, sample, own, None);
                     note
                 }
+                Done::Struck(body, jump) => {
+                    jumped = true;
+                    let sample = self.group_of(*body).sample(*body, now.time);
+                    blow(*body, sample, script::Own::default(), Some(*jump));
+                    script::strike_note((event, picked), named(*body), *jump)
+                }
+                Done::Ended(body) => {
+                    let sample = self.group_of(*body).sample(*body, now.time);
+                    script::end_note(event, named(*body), &sample)
+                }
+                Done::Set(body) => {
+                    jumped = true;
+                    script::set_note(event, named(*body))
+                }
+                Done::Switched => script::switch_note(event, self.scene),
+                Done::Missed => script::miss_note(event),
             };
             sink.note(now, &note)?;
         }
-        Ok(jumps.iter().any(Option::is_some))
+        Ok(jumped)
     }
 
-    /// The bodies that some events concern, each once.
-    fn touched(&self, happenings: &[Happening]) -> Vec<usize> {
-        let bodies = happenings
-            .iter()
-            .map(|happening| self.scene.events[happening.event()].body);
-        let mut bodies: Vec<usize> = bodies.collect();
+    /// The bodies whose motion goes on otherwise, each once.
+    fn touched(&self, applied: &[Applied]) -> Vec<usize> {
+        let mut bodies: Vec<usize> = Vec::new();
+        for Applied { done, .. } in applied {
+            match done {
+                Done::Begun(lasting) => bodies.push(lasting.body),
+                Done::Ended(body) | Done::Struck(body, _) | Done::Set(body) => bodies.push(*body),
+                Done::Switched => bodies.extend(0..self.subjects.len()),
+                Done::Missed => {}
+            }
+        }
         bodies.sort_unstable();
         bodies.dedup();
         bodies
@@ -544,22 +776,20 @@ fn truths(scene: &Scene) -> Vec<RefCell<Truth>> {
         .collect()
 }
 
-/// Strikes the truth as [`begin`] strikes the simulated body.
-fn strike(truth: &mut Truth, event: &Event, at: f64) {
+/// Strikes the truth as [`strike`] strikes the simulated body.
+fn strike_truth(truth: &mut Truth, body: usize, event: &Event, at: f64) {
     match event.action {
-        Action::Push { .. } | Action::Torque { .. } => {}
-        Action::Impulse { impulse, point } => truth.strike(event.body, impulse, Some(point), at),
-        Action::AngularImpulse { impulse } => truth.strike(event.body, impulse, None, at),
+        Action::Impulse { impulse, point } => truth.strike(body, impulse, Some(point), at),
+        Action::AngularImpulse { impulse } => truth.strike(body, impulse, None, at),
+        _ => {}
     }
 }
 
-/// Starts event `k` on the group of its body. What lasts is left to [`Group::load`]; an impulse
-/// acts at once.
-fn begin(group: &mut Group, scene: &Scene, k: usize) -> Option<Jump> {
-    let event = &scene.events[k];
+/// What an impulse does, at once; `None` of what is none.
+fn strike(group: &mut Group, body: usize, event: &Event) -> Option<Jump> {
     match event.action {
-        Action::Push { .. } | Action::Torque { .. } => None,
-        Action::Impulse { impulse, point } => Some(group.strike(event.body, impulse, Some(point))),
-        Action::AngularImpulse { impulse } => Some(group.strike(event.body, impulse, None)),
+        Action::Impulse { impulse, point } => Some(group.strike(body, impulse, Some(point))),
+        Action::AngularImpulse { impulse } => Some(group.strike(body, impulse, None)),
+        _ => None,
     }
 }

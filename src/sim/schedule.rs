@@ -171,6 +171,21 @@ impl<'s> Schedule<'s> {
             .map_or(self.end.time, |(at, _)| at.time)
     }
 
+    /// Takes back what was to happen: the clock no longer stops for it.
+    pub fn cancel(&mut self, happening: Happening) {
+        let coming = self.happenings[self.past..].iter();
+        let found = coming.zip(self.past..).find_map(|((_, group), k)| {
+            let place = group.iter().position(|&other| other == happening)?;
+            Some((k, place))
+        });
+        if let Some((k, place)) = found {
+            self.happenings[k].1.remove(place);
+            if self.happenings[k].1.is_empty() {
+                self.happenings.remove(k);
+            }
+        }
+    }
+
     fn coming(&self) -> Option<Node> {
         self.happenings.get(self.past).map(|(at, _)| *at)
     }

@@ -21,6 +21,12 @@ pub struct Sizes {
 }
 
 impl Sizes {
+    pub fn count_force(&mut self, size: f64) {
+        if size.is_finite() {
+            self.force = self.force.max(size);
+        }
+    }
+
     pub fn count_impulse(&mut self, size: f64) {
         if size.is_finite() {
             self.impulse = self.impulse.max(size);

@@ -10,7 +10,7 @@
 
 use crate::body::{Inertial, InertialBlock, State, StateBlock};
 use crate::effect::{Called, Load, WrenchBlock};
-use crate::scene::Scene;
+use crate::scene::{Action, Event, Scene, Target};
 use crate::trace::Subject;
 use nalgebra::Vector3;
 
@@ -33,16 +33,27 @@ pub fn tell_apart(scene: &Scene, subjects: &mut [Subject]) {
         };
         let lasting = scene.effects.iter().filter(|(_, called)| turns(called));
         let mut names: Vec<String> = lasting.map(|(name, _)| (*name).to_owned()).collect();
-        for event in scene.events.iter().filter(|event| event.body == k) {
+        for event in scene.events.iter().filter(|event| may_reach(event, k)) {
+            let name = match event.action {
+                Action::Torque { .. } => "torque",
+                _ => "push",
+            };
             let lasting = event.action.lasts() > 0.0;
-            let noun = event.action.noun().to_owned();
-            if lasting && !names.contains(&noun) {
-                names.push(noun);
+            if lasting && !names.iter().any(|known| known == name) {
+                names.push(name.to_owned());
             }
         }
         if names.len() > 1 {
             subject.sources = names;
         }
+    }
+}
+
+fn may_reach(event: &Event, body: usize) -> bool {
+    match &event.target {
+        Target::Body(target) => *target == body,
+        Target::Hit(bodies) => bodies.contains(&body),
+        Target::All | Target::Log(_) => false,
     }
 }
 

@@ -7,9 +7,10 @@
 
 use super::choose::{Choice, Stated};
 use super::group::{Group, Weight};
+use super::script::Acting;
 use crate::integrator::{Kind, METHODS, Method, Step};
 use crate::math::angle_between;
-use crate::scene::{Framed, Scene};
+use crate::scene::{Change, Framed, Scene};
 use crate::trace::{Deviation, Sample, Subject};
 use nalgebra::{Unit, Vector3};
 
@@ -74,10 +75,26 @@ impl Truth {
         }
     }
 
+    /// Starts anew from a body alone in its group, at time `at` (s).
+    pub fn restart(&mut self, body: Group, at: f64) {
+        *self = Self::new(body);
+        if let Known::Exact { now, .. } = &mut self.known {
+            *now = at;
+        }
+    }
+
+    /// Sets the true body as the simulated one is set.
+    pub fn set(&mut self, index: usize, change: &Change, at: f64) {
+        if let Known::Exact { body, now } = &mut self.known {
+            move_to(body, now, at);
+            body.set(index, change);
+        }
+    }
+
     /// Goes on under what acts from `t` until `until`; `simulated` is the body as it is now.
     pub fn set_out(
         &mut self,
-        (scene, active): (&Scene, &[usize]),
+        (scene, acting): (&Scene, &Acting),
         (t, until): (f64, f64),
         simulated: Simulated<'_>,
     ) {
@@ -85,7 +102,7 @@ impl Truth {
         let exact = match (known, closed_form()) {
             (Known::Exact { mut body, mut now }, Some(method)) => {
                 move_to(&mut body, &mut now, t);
-                body.load(scene, active);
+                body.load(scene, acting);
                 let takes = body.refusal(method).is_none();
                 takes.then(|| {
                     let mut exactly = Stated(Choice {

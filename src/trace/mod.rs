@@ -26,7 +26,8 @@ pub struct Track<'a> {
 /// A line of the event log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Note {
-    pub body: usize,
+    /// The body it is about, where it is about one.
+    pub body: Option<usize>,
     pub text: String,
     pub kind: NoteKind,
     /// An impulse (N·s in place of N) and where it struck.
@@ -39,6 +40,10 @@ pub enum NoteKind {
     Begins,
     Ends,
     Instant,
+    /// Its state was made another one.
+    Set,
+    /// Something to read, which the motion of no body shows.
+    Remark,
     /// Something went wrong.
     Failure,
 }

@@ -86,6 +86,8 @@ const SPIN: usize = 3;
 struct Body {
     lane: usize,
     terms: Option<Arc<[Term]>>,
+    /// Whether what is applied changes with time by itself.
+    timed: bool,
     /// For the sake of the decay, s.
     longest: f64,
     /// The last step, s: from where, how long, and its end.
@@ -165,13 +167,12 @@ impl Body {
             .load
             .decay()
             .map_or(0.0, |decay| decay.linear_rate().max(decay.angular_rate()));
-        let terms = interval.load.terms(&interval.inertial).map(|terms| {
-            let own = terms.into_iter().filter(|term| term.lane() == lane);
-            own.collect()
-        });
+        let terms = interval.load.terms_of(lane, &interval.inertial);
+        let terms = terms.map(Arc::from);
         let mut this = Self {
             lane,
             terms,
+            timed: interval.load.changes_with_time(lane, &interval.inertial),
             longest: DECAY_A_STEP / rates,
             from: t,
             h: 0.0,
@@ -299,7 +300,15 @@ impl Body {
             // A difference of slopes is known to some roundings of them; less is no error but noise,
             // and a quantity that starts at zero would make it look large whatever the step.
             let slopes = self.k[..12].iter().map(|k| norm(&k[part]));
-            if e5 <= NOISE * slopes.fold(0.0, f64::max) {
+            let mut noise = NOISE * slopes.fold(0.0, f64::max);
+            if self.timed {
+                // A time is known to a rounding, and slopes that change with it no better: what begins at
+                // rest under a force that begins at nothing shows it.
+                let changes = self.k[..12].iter();
+                let changes = changes.map(|k| norm(&along(k, -1.0, &self.k[0])[part]));
+                noise += NOISE * (self.reached.abs() / h) * changes.fold(0.0, f64::max);
+            }
+            if e5 <= noise {
                 return 0.0;
             }
             let unit = h / (interval.tolerance * size);

@@ -9,6 +9,7 @@
 //! ```
 
 use super::{NamedPoint, ProfilePoint, Solid, SolidKind, Surface, along_y, ends, length, positive};
+use crate::mass::ray::{Hit, Ray, nearest};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -53,6 +54,23 @@ impl Solid for Capsule {
 
     fn points(&self) -> Vec<NamedPoint> {
         ends(0.5 * self.height + self.radius)
+    }
+
+    /// The cylinder's side, and of each sphere about an end of its axis the half beyond.
+    fn ray(&self, ray: &Ray) -> Option<Hit> {
+        let half = 0.5 * self.height;
+        let side = ray.meets_turned([self.radius, half], [self.radius, -half]);
+        let caps = [1.0, -1.0].into_iter().flat_map(|end| {
+            let own = Ray {
+                origin: ray.origin - Vector3::y() * (end * half),
+                ..*ray
+            };
+            let hits = own.ends_in_sphere(self.radius);
+            hits.into_iter()
+                .flatten()
+                .filter(move |hit| end * hit.normal.y >= 0.0)
+        });
+        nearest(caps.chain(side))
     }
 
     fn surface(&self) -> Surface {

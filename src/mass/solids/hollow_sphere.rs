@@ -4,6 +4,7 @@
 use super::{
     NamedPoint, Parameter, ProfilePoint, Solid, SolidKind, Surface, ends, length, positive,
 };
+use crate::mass::ray::{Hit, Ray};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -75,5 +76,9 @@ impl Solid for HollowSphere {
 
     fn surface(&self) -> Surface {
         Surface::Revolution(vec![ProfilePoint::half_circle(self.radius)])
+    }
+
+    fn ray(&self, ray: &Ray) -> Option<Hit> {
+        ray.meets_sphere(self.radius)
     }
 }

@@ -22,6 +22,7 @@ mod tube;
 
 pub use triangles::Triangles;
 
+use super::ray::{Hit, Ray};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use std::borrow::Cow;
 use std::fmt::Debug;
@@ -58,6 +59,12 @@ pub trait Solid: Debug + Send + Sync {
 
     /// Its shape, for drawing, from the solid's origin.
     fn surface(&self) -> Surface;
+
+    /// Where a ray (the solid's axes, from its origin) first meets it. What is drawn of flat, cylindrical
+    /// and conical pieces is exact; a solid that is drawn in facets says itself where it is met.
+    fn ray(&self, ray: &Ray) -> Option<Hit> {
+        self.surface().meets(ray)
+    }
 }
 
 /// A point and what it is called.

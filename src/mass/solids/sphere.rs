@@ -1,6 +1,7 @@
 //! The solid sphere: `I = 2/5 m r²` about every axis.
 
 use super::{NamedPoint, ProfilePoint, Solid, SolidKind, Surface, ends, length, positive};
+use crate::mass::ray::{Hit, Ray};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -38,5 +39,9 @@ impl Solid for Sphere {
 
     fn surface(&self) -> Surface {
         Surface::Revolution(vec![ProfilePoint::half_circle(self.radius)])
+    }
+
+    fn ray(&self, ray: &Ray) -> Option<Hit> {
+        ray.meets_sphere(self.radius)
     }
 }

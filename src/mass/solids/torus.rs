@@ -5,6 +5,7 @@
 //! `∫ y² dm = m c²/4`; across it is half the first and the second.
 
 use super::{NamedPoint, ProfilePoint, Solid, SolidKind, Surface, along_y, length, positive};
+use crate::mass::ray::{Hit, Ray};
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
@@ -49,6 +50,38 @@ impl Solid for Torus {
     fn points(&self) -> Vec<NamedPoint> {
         let rim = Vector3::x() * (self.radius + self.tube);
         vec![("centre".into(), Vector3::zeros()), ("rim".into(), rim)]
+    }
+
+    /// By steps as long as the nearest point of the tube is away (Hart 1996), which never go through it.
+    fn ray(&self, ray: &Ray) -> Option<Hit> {
+        /// A ray that grazes the tube closes in by a constant factor a step at worst.
+        const STEPS: usize = 512;
+        let size = self.radius + self.tube;
+        let speed = ray.direction.norm();
+        let near = 1e-14 * size;
+        // From where the ray enters the sphere about it all; from the eye, where that is inside.
+        let mut t = match ray.origin.norm() <= size {
+            true => 0.0,
+            false => ray.meets_sphere(size)?.t,
+        };
+        for _ in 0..STEPS {
+            let p = ray.at(t);
+            let radial = (p.x * p.x + p.z * p.z).sqrt();
+            let out = radial - self.radius;
+            let from_middle = (out * out + p.y * p.y).sqrt();
+            let away = (from_middle - self.tube).abs();
+            if away <= near {
+                let along = Vector3::new(p.x, 0.0, p.z) * (out / radial);
+                let normal = (along + Vector3::y() * p.y) / from_middle;
+                return Some(Hit { t, normal });
+            }
+            // Past the sphere on the way out there is nothing more.
+            if p.norm() > size * (1.0 + 1e-9) && p.dot(&ray.direction) > 0.0 {
+                return None;
+            }
+            t += away / speed;
+        }
+        None
     }
 
     fn surface(&self) -> Surface {
