@@ -617,3 +617,40 @@ fn every_solid_can_be_named_in_a_scene() {
             .contains("what is thin has none")
     );
 }
+
+/// Looking for the nearest of many names takes its time; of many names that miss, only those that are
+/// told about are worth it.
+#[test]
+fn many_events_on_no_body_are_told_in_a_moment() {
+    let mut source = String::new();
+    for k in 0..5_000 {
+        source += &format!(
+            "[[body]]\nname = \"box_{k}\"\nmass = 1.0\ninertia = [1, 1, 1]\n[[event]]\nat = 0.5\nbody = \"bax_{k}\"\nangular_impulse = [0, 1, 0]\n"
+        );
+    }
+    let start = std::time::Instant::now();
+    let why = parsed(&source).err().unwrap();
+    assert!(why.contains("did you mean `box_0`?") && why.ends_with("and 4950 problems more"));
+    // 50 searches take a second where the build is slow and the machine shared, 5,000 some minutes.
+    assert!(start.elapsed().as_secs() < 30);
+}
+
+#[test]
+fn the_examples_of_the_page_are_right() {
+    let page = include_str!("../docs/scenes.md");
+    let block = |start: &str| {
+        let from = page.find(start).unwrap();
+        let to = page[from..].find("```").unwrap();
+        scene(&page[from..from + to]).bodies
+    };
+    let handle = block("[[body]]\nname = \"t-handle\"");
+    // 7800 · 0.12 + 600 · 0.2, times π r².
+    let mass = (7800.0 * 0.12 + 600.0 * 0.2) * PI * 1e-4;
+    assert!((handle[0].properties.mass().unwrap() - mass).abs() < 1e-15);
+    let swarm = format!(
+        "[record]\nstate = 60\n{}",
+        &page[page.find("[[swarm]]").unwrap()..]
+    );
+    let swarm = scene(swarm.split("```").next().unwrap()).bodies;
+    assert_eq!(swarm.len(), 10_000);
+}

@@ -86,7 +86,11 @@ impl Bodies {
         let name = node.str(problems)?;
         let found = self.index(name);
         if found.is_none() {
-            let remedy = self.remedy(name);
+            // The names may be many, and so may the events that miss them.
+            let remedy = match problems.is_full() {
+                true => String::new(),
+                false => self.remedy(name),
+            };
             node.problem(format!("names no body of the scene; {remedy}"), problems);
         }
         found

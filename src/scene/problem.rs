@@ -61,6 +61,11 @@ impl Problems {
         }
     }
 
+    /// Whether what comes now is only counted: its message is not worth much thought.
+    pub(super) fn is_full(&self) -> bool {
+        self.list.len() >= MOST
+    }
+
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }

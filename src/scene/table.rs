@@ -129,14 +129,20 @@ pub(super) fn nearest(name: &str, known: &[&str]) -> String {
     const LONGEST: usize = 64;
     /// As many as one reads.
     const MOST: usize = 16;
+    /// So many are compared: bodies may have ten thousand names.
+    const COMPARED: usize = 1_000;
     let length = name.chars().count();
     // A slip of the hand: up to a third of the letters, by edits or swaps.
-    let distance = |candidate: &&&str| strsim::damerau_levenshtein(name, candidate);
-    let close = |candidate: &&&str| 3 * distance(candidate) <= length.max(3);
-    let comparable = known
+    let close = |(distance, _): &(usize, &&str)| 3 * distance <= length.max(3);
+    let distances = known
         .iter()
-        .filter(|c| length <= LONGEST && c.len() <= LONGEST);
-    if let Some(best) = comparable.filter(close).min_by_key(distance) {
+        .filter(|c| length <= LONGEST && c.len() <= LONGEST)
+        .take(COMPARED)
+        .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate));
+    if let Some((_, best)) = distances
+        .filter(close)
+        .min_by_key(|(distance, _)| *distance)
+    {
         return format!("did you mean `{best}`?");
     }
     let mut some = known[..known.len().min(MOST)].join(", ");
