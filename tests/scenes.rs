@@ -133,7 +133,7 @@ fn the_t_handle_turns_over_when_jacobi_says() {
     let scene = load("t_handle.toml");
     // Steel times the volume of a box and three prisms (tests/oracles/t_handle.csv), cm³.
     let mass = scene.bodies[0].properties.mass().unwrap();
-    assert!((mass - 7850.0 * 48.784185705290186e-6).abs() < 1e-14);
+    assert!((mass - 7850.0 * 4.878_418_570_529_019e-5).abs() < 1e-14);
     let [mesh] = &scene.enclosures[..] else {
         panic!("one file");
     };

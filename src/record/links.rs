@@ -30,7 +30,10 @@ pub fn links(path: &Path, robot: &Description) -> Result<Summary, RecordError> {
     file.begin_recording()?;
     file.statics("/", &[&ViewCoordinates::RIGHT_HAND_Z_UP()])?;
     let title = format!("{}: links", robot.name);
-    file.statics("/__properties", &[&RecordingInfo::new().with_name(title)])?;
+    file.statics(
+        "/__properties",
+        &[&RecordingInfo::new().with_name(title.as_str())],
+    )?;
     file.statics("/legend", &[&TextDocument::from_markdown(LEGEND)])?;
     let mut at = 0.0;
     for (k, link) in robot.links.iter().enumerate() {
