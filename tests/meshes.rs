@@ -414,7 +414,7 @@ fn glb(soup: &Soup, node: &str) -> Vec<u8> {
             .flat_map(|&k| (k as u16).to_le_bytes()),
     );
     let indices = binary.len() - positions;
-    while binary.len() % 4 != 0 {
+    while !binary.len().is_multiple_of(4) {
         binary.push(0);
     }
     let mut json = format!(
@@ -428,7 +428,7 @@ fn glb(soup: &Soup, node: &str) -> Vec<u8> {
         3 * soup.triangles.len(),
         binary.len()
     );
-    while json.len() % 4 != 0 {
+    while !json.len().is_multiple_of(4) {
         json.push(' ');
     }
     let mut bytes = b"glTF".to_vec();
