@@ -505,7 +505,7 @@ mod tests {
         for (name, lengths) in cases {
             let solid = solid(name, lengths);
             let mut met = 0;
-            for k in 0..2000_u64 {
+            for k in 0..600_u64 {
                 let u = |n: u64| [0, 1, 2].map(|j| draw::unit(7, 6 * k + 3 * n + j));
                 let origin = draw::in_cube(u(0)).normalize() * 4.0;
                 let ray = Ray {
@@ -514,30 +514,23 @@ mod tests {
                 };
                 let hit = solid.ray(&ray);
                 met += usize::from(hit.is_some());
-                // t goes from 0 to some 2; a ten-thousandth of it tells inside from outside but at grazing.
-                let (reach, step) = (hit.as_ref().map_or(2.0, |hit| hit.t), 1e-4);
                 let inside = |t: f64| solid.contains(ray.at(t));
-                let first = (0..20_000)
-                    .map(|k| f64::from(k) * step)
-                    .find(|&t| inside(t));
-                match (hit, first) {
-                    (Some(hit), Some(first)) => {
-                        let graze = hit.normal.dot(&ray.direction.normalize()).abs() < 0.05;
-                        let late = first - hit.t;
-                        assert!(
-                            late > -1e-12 && (late < step || graze),
-                            "{name} {k}: {late}"
-                        );
-                        assert!(hit.normal.dot(&ray.direction) <= 0.0, "{name} {k}");
-                    }
-                    (Some(hit), None) => {
-                        let slope = hit.normal.dot(&ray.direction.normalize()).abs();
-                        assert!(slope < 0.05, "{name} {k}: {slope}");
-                    }
-                    (None, first) => assert_eq!(first, None, "{name} {k} up to {reach}"),
+                let before = hit.as_ref().map_or(2.0, |hit| hit.t - 1e-9);
+                let scan = (0..4000).map(|k| f64::from(k) * 5e-4);
+                let first = scan.take_while(|&t| t < before).find(|&t| inside(t));
+                assert_eq!(first, None, "{name} {k}: inside before {before}");
+                if let Some(hit) = hit {
+                    // However short the chord: a ray may cut a corner.
+                    let beyond = (0..60).map(|k| hit.t + 1e-2 * 0.7_f64.powi(k));
+                    assert!(
+                        beyond.into_iter().any(inside),
+                        "{name} {k}: nothing at {}",
+                        hit.t
+                    );
+                    assert!(hit.normal.dot(&ray.direction) <= 0.0, "{name} {k}");
                 }
             }
-            assert!((200..1900).contains(&met), "{name}: {met} rays met it");
+            assert!((60..570).contains(&met), "{name}: {met} rays met it");
         }
     }
 }
