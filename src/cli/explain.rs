@@ -79,7 +79,7 @@ struct Interval {
     bodies: Vec<String>,
     from: f64,
     until: f64,
-    active: Vec<&'static str>,
+    active: Vec<String>,
     method: &'static str,
     step: Option<f64>,
     expected: Option<f64>,

@@ -4,9 +4,10 @@
 use super::check;
 use super::ladder::refusal;
 use super::reference::truest;
+use crate::effect::Called;
 use crate::integrator::{Kind, Method};
 use crate::math::angle_between;
-use crate::scene::{Action, Framed, Scene};
+use crate::scene::{Action, Framed, Scene, SceneEffect};
 use crate::sim::{Choice, Choose, Setting, SimError, Simulation};
 use crate::trace::{Instant, Note, Sample, Sink, SinkError, Track};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -35,6 +36,9 @@ impl Race {
     ) -> Result<Self, SimError> {
         let mut alone = scene.clone();
         alone.bodies.truncate(1);
+        alone.bodies.iter_mut().for_each(|body| body.method = None);
+        alone.effects.retain(|effect| effect.concerns(0));
+        alone.effects.iter_mut().for_each(|e| e.bodies = None);
         alone.events.retain(|event| event.body == 0);
         alone.step = step.min(scene.duration);
         let mut runners = vec![None];
@@ -89,6 +93,9 @@ fn lined_up(alone: &Scene, runners: &[Option<Choice>], apart: f64) -> Scene {
     let mut scene = alone.clone();
     scene.bodies.clear();
     scene.events.clear();
+    // What is fixed in the world each runner has its own of.
+    let fixed = |effect: &SceneEffect| moved(effect, Vector3::zeros()).is_some();
+    scene.effects.retain(|effect| !fixed(effect));
     // Wider than high, as screens are.
     let columns = (2.0 * runners.len() as f64).sqrt().ceil().max(1.0) as usize;
     for (k, runner) in runners.iter().enumerate() {
@@ -102,6 +109,11 @@ fn lined_up(alone: &Scene, runners: &[Option<Choice>], apart: f64) -> Scene {
             body.position_w += shift_w;
             scene.bodies.push(body);
         }
+        let own = alone.effects.iter().filter_map(|e| moved(e, shift_w));
+        scene.effects.extend(own.map(|mut effect| {
+            effect.bodies = Some(vec![k]);
+            effect
+        }));
         for event in &alone.events {
             let mut event = event.clone();
             event.body = k;
@@ -114,6 +126,16 @@ fn lined_up(alone: &Scene, runners: &[Option<Choice>], apart: f64) -> Scene {
         }
     }
     scene
+}
+
+/// An effect that has something fixed in the world, with that elsewhere.
+fn moved(effect: &SceneEffect, by_w: Vector3<f64>) -> Option<SceneEffect> {
+    let Called::Load(spec) = &effect.called else {
+        return None;
+    };
+    let mut effect = effect.clone();
+    effect.called = Called::Load(spec.moved(by_w)?);
+    Some(effect)
 }
 
 struct ByBody<'a>(&'a [Option<Choice>]);

@@ -1,7 +1,9 @@
 //! `[[body]]`: shape, mass, inertia, pose, pivot.
 
 use super::problem::Problems;
+use super::read;
 use super::table::{Node, Table, nearest};
+use crate::integrator::Method;
 use crate::mass::solids::{SOLIDS, Solid, SolidKind};
 use crate::mass::{MassProperties, UnphysicalMass};
 use crate::math::axis_angle;
@@ -27,6 +29,29 @@ pub struct Body {
     pub q_wb: UnitQuaternion<f64>,
     /// World, rad/s.
     pub omega_w: Vector3<f64>,
+    /// By which it goes in place of the scene's.
+    pub method: Option<OwnMethod>,
+}
+
+/// A method for one body.
+#[derive(Clone, Copy)]
+pub struct OwnMethod {
+    pub method: &'static dyn Method,
+    /// For a method with steps of its own, as [`super::Stepping::Method`] has it.
+    pub tolerance: f64,
+}
+
+impl PartialEq for OwnMethod {
+    fn eq(&self, other: &Self) -> bool {
+        let name = |own: &Self| own.method.info().name;
+        name(self) == name(other) && self.tolerance == other.tolerance
+    }
+}
+
+impl std::fmt::Debug for OwnMethod {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} ({:e})", self.method.info().name, self.tolerance)
+    }
 }
 
 impl Body {
@@ -74,7 +99,12 @@ impl Bodies {
     }
 }
 
-pub(super) fn read_all(tables: &[Table<'_>], gyroscopic: bool, problems: &mut Problems) -> Bodies {
+/// `gyroscopic` says of a body's name whether it keeps its angular momentum.
+pub(super) fn read_all(
+    tables: &[Table<'_>],
+    gyroscopic: &dyn Fn(&str) -> bool,
+    problems: &mut Problems,
+) -> Bodies {
     let mut bodies = Bodies {
         declared: tables.len(),
         valid: Vec::new(),
@@ -92,7 +122,8 @@ pub(super) fn read_all(tables: &[Table<'_>], gyroscopic: bool, problems: &mut Pr
             );
         }
         if let Some(node) = table.get("immovable")
-            && gyroscopic
+            && let Some(name) = table.get("name")
+            && gyroscopic(name.str(&mut Problems::new("", "")).unwrap_or_default())
         {
             node.problem(
                 "with gyroscopic = true has no meaning yet: a held axis is the tutorial's, whose model has no gyroscopic term; use a pivot, or switch one of them off",
@@ -109,7 +140,7 @@ pub(super) fn read_all(tables: &[Table<'_>], gyroscopic: bool, problems: &mut Pr
 const LONGEST_NAME: usize = 64;
 
 /// Names become paths of the recording, so they hold nothing that a path would read otherwise.
-fn name<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
+pub(super) fn name<'d>(node: &Node<'d>, problems: &mut Problems) -> Option<&'d str> {
     let name = node.str(problems)?;
     let plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
     if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(plain) {
@@ -149,6 +180,7 @@ fn read(table: &Table<'_>, problems: &mut Problems) -> Option<Body> {
         None => Some(UnitQuaternion::identity()),
         Some(node) => orientation(node, problems),
     };
+    let method = own_method(table, problems);
     let mut body = Body {
         label: label.or(name).unwrap_or_default().to_owned(),
         name: name.unwrap_or_default().to_owned(),
@@ -159,6 +191,7 @@ fn read(table: &Table<'_>, problems: &mut Problems) -> Option<Body> {
         velocity_w: velocity_w.unwrap_or(Some(Vector3::zeros()))?,
         q_wb: q_wb?,
         omega_w: omega_w?,
+        method: method?,
     };
     if let Some(node) = pivot {
         let pivot = point(&node, &body, problems)?;
@@ -178,6 +211,27 @@ fn read(table: &Table<'_>, problems: &mut Problems) -> Option<Body> {
         body.velocity_w = body.omega_w.cross(&(body.q_wb * -pivot));
     }
     Some(body)
+}
+
+/// The body's own method, if it has one; `None` where what is written is wrong.
+fn own_method(table: &Table<'_>, problems: &mut Problems) -> Option<Option<OwnMethod>> {
+    let (node, tolerance) = (table.get("method"), table.get("tolerance"));
+    let Some(node) = node else {
+        if let Some(node) = tolerance {
+            node.problem(
+                "is for a method of the body's own; name one, or leave it out",
+                problems,
+            );
+            return None;
+        }
+        return Some(None);
+    };
+    let method = read::method(&node, problems)?;
+    let tolerance = match tolerance {
+        None => read::DEFAULT_TOLERANCE,
+        Some(node) => read::tolerance(&node, Some(method), problems)?,
+    };
+    Some(Some(OwnMethod { method, tolerance }))
 }
 
 fn vector(
@@ -423,7 +477,7 @@ fn immovable(table: &Table<'_>, problems: &mut Problems) -> Option<[bool; 3]> {
     Some(held)
 }
 
-fn orientation(node: Node<'_>, problems: &mut Problems) -> Option<UnitQuaternion<f64>> {
+pub(super) fn orientation(node: Node<'_>, problems: &mut Problems) -> Option<UnitQuaternion<f64>> {
     if !node.is_table() {
         let [x, y, z, w] = node.numbers::<4>("a quaternion x, y, z, w, body to world", problems)?;
         let largest = [x, y, z, w]

@@ -4,18 +4,19 @@
 //! checks again. Units are SI and radians; degrees exist only in the file.
 
 mod body;
+mod effect;
 mod event;
 mod pairing;
 mod problem;
 mod read;
 mod table;
 
-pub use body::Body;
+pub use body::{Body, OwnMethod};
+pub(crate) use effect::lasting;
+pub use effect::{Off, SceneEffect};
 pub use event::{Action, Event, Framed};
-pub(crate) use pairing::lasting;
 pub use problem::Problems;
 
-use crate::effect::Called;
 use crate::integrator::Method;
 use crate::trace::StreamSet;
 use std::io::Read as _;
@@ -38,8 +39,8 @@ pub struct Scene {
     /// Of the clock, s: what a method of fixed steps takes, and how often a state can be recorded.
     pub step: f64,
     pub record: Record,
-    /// The effects that are called for; those switched off are not here.
-    pub effects: Vec<(&'static str, Called)>,
+    /// The effects that are called for, those that are off at first too.
+    pub effects: Vec<SceneEffect>,
     pub bodies: Vec<Body>,
     pub events: Vec<Event>,
 }

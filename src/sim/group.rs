@@ -3,10 +3,10 @@
 use super::Jump;
 use super::choose::{Choose, Setting};
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
-use crate::effect::{Frame, Load, Push, Term, WrenchBlock};
+use crate::effect::{Frame, Load, Member, Push, Term, WrenchBlock};
 use crate::integrator::{Interval, Kind, Method, Refusal, Step, Stepper, Work};
 use crate::mass::tensor;
-use crate::scene::{Body, Event, Framed, Scene, lasting};
+use crate::scene::{Body, Event, Framed, Off, Scene, lasting};
 use crate::trace::{Deviation, Motion, PointForce, Sample, Subject};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
@@ -33,6 +33,15 @@ pub struct Group {
     pub steps: Option<Kind>,
     /// What the steppers before this one did.
     done: Work,
+}
+
+/// What acts now: of a scene the effects that are not off, and the active events.
+#[derive(Clone, Copy)]
+pub struct Acting<'a> {
+    pub scene: &'a Scene,
+    /// Indices of events.
+    pub active: &'a [usize],
+    pub off: &'a Off,
 }
 
 /// A force that is constant in the world, at a point of a body.
@@ -77,15 +86,20 @@ pub fn subject(body: &Body) -> Subject {
     }
 }
 
-/// The bodies of a scene in groups of `width` (at most eight), as the scene starts them.
-pub fn groups(bodies: &[Body], width: usize) -> Vec<Group> {
-    let starts = (0..bodies.len()).step_by(width);
-    starts
-        .map(|start| {
-            let members = start..(start + width).min(bodies.len());
-            Group::new(members.clone(), &bodies[members])
-        })
-        .collect()
+/// The bodies of a scene in groups of neighbours, at most `width` (up to eight) that go by one model and
+/// method, as the scene starts them.
+pub fn groups(scene: &Scene, width: usize) -> Vec<Group> {
+    let mut groups = Vec::new();
+    let mut start = 0;
+    for next in 1..=scene.bodies.len() {
+        let full = next - start >= width;
+        let end = next == scene.bodies.len();
+        if end || full || !scene.go_together(start, next) {
+            groups.push(Group::new(start..next, &scene.bodies[start..next]));
+            start = next;
+        }
+    }
+    groups
 }
 
 impl Group {
@@ -144,11 +158,11 @@ impl Group {
         }
     }
 
-    /// The forces on a body, where its model keeps their energy: Euler's equations without damping,
-    /// and nothing but forces that are constant in the world at points of the body.
+    /// The forces on a body, where its model keeps their energy: Euler's equations without damping
+    /// or a speed limit, and nothing but forces that are constant in the world at points of the body.
     pub fn weights(&self, body: usize) -> Option<Vec<Weight>> {
         let lane = body - self.members.start;
-        if self.load.decay().is_some() || !self.load.gyroscopic() {
+        if self.load.decay().is_some() || self.load.limit().is_some() || !self.load.gyroscopic() {
             return None;
         }
         let terms = self.load.terms(&self.inertial)?;
@@ -246,8 +260,16 @@ impl Group {
     }
 
     /// The effects of the scene and the active events that concern this group.
-    pub fn load(&mut self, scene: &Scene, active: &[usize]) {
-        self.load = lasting(scene);
+    pub fn load(&mut self, Acting { scene, active, off }: Acting<'_>) {
+        let bodies = scene.bodies[self.members.clone()].iter().enumerate();
+        let members = bodies.map(|(lane, body)| Member {
+            lane,
+            inertial: self.inertial.get(lane),
+            q_pb: self.q_pb[lane],
+            body,
+        });
+        let members: Vec<Member<'_>> = members.collect();
+        self.load = lasting(scene, self.members.start, &members, off);
         self.pushes.clear();
         for event in active.iter().map(|&k| &scene.events[k]) {
             if !self.members.contains(&event.body) {

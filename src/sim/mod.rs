@@ -12,11 +12,11 @@ pub use sizes::Sizes;
 
 use crate::body::LANES;
 use crate::integrator::{Kind, Step, Work};
-use crate::scene::{Action, Event, Scene, Stepping};
+use crate::scene::{Action, Event, Off, Scene, Stepping};
 use crate::trace::{
     Instant, Motion, Note, NoteKind, PointForce, Sample, Sink, SinkError, Subject, Track, short,
 };
-use group::Group;
+use group::{Acting, Group};
 use nalgebra::Vector3;
 use schedule::{Schedule, Stretch};
 use script::Happening;
@@ -28,10 +28,12 @@ pub struct Simulation<'s> {
     scene: &'s Scene,
     subjects: Vec<Subject>,
     groups: Vec<Group>,
-    /// Bodies in a group.
-    width: usize,
+    /// By body: the group it is in.
+    home: Vec<usize>,
     /// Indices of the events that act now.
     active: Vec<usize>,
+    /// The effects that are off now.
+    off: Off,
     threads: usize,
     /// By body; none where no stream compares with the truth.
     truths: Vec<RefCell<Truth>>,
@@ -100,7 +102,7 @@ pub enum SimError {
 }
 
 impl<'s> Simulation<'s> {
-    /// Eight bodies go together by one method. Where a scene states an accuracy each goes alone, so
+    /// Eight bodies that have one model and method go together. Where a scene states an accuracy each goes alone, so
     /// that each has the method it needs.
     pub fn new(scene: &'s Scene) -> Self {
         let width = match scene.stepping {
@@ -116,19 +118,29 @@ impl<'s> Simulation<'s> {
     }
 
     fn in_groups(scene: &'s Scene, width: usize) -> Self {
+        let groups = group::groups(scene, width);
+        let homes = groups.iter().enumerate();
         let mut simulation = Self {
             scene,
             subjects: scene.bodies.iter().map(group::subject).collect(),
-            groups: group::groups(&scene.bodies, width),
-            width,
+            home: homes
+                .flat_map(|(k, group)| group.members.clone().map(move |_| k))
+                .collect(),
+            groups,
             active: Vec::new(),
+            off: scene.off_at_start(),
             threads: std::thread::available_parallelism().map_or(1, usize::from),
             truths: truths(scene),
             timed: scene.record.streams.contains("step_time"),
             step_time: None,
         };
+        let off = &simulation.off;
         for group in &mut simulation.groups {
-            group.load(scene, &[]);
+            group.load(Acting {
+                scene,
+                active: &[],
+                off,
+            });
         }
         simulation
     }
@@ -158,7 +170,11 @@ impl<'s> Simulation<'s> {
             if let Some(strike) = begin(&mut group, self.scene, k).and_then(|jump| jump.strike) {
                 sizes.count_impulse(strike.force_w.norm());
             }
-            group.load(self.scene, &[k]);
+            group.load(Acting {
+                scene: self.scene,
+                active: &[k],
+                off: &self.off,
+            });
             sizes.count(
                 subject,
                 &group.sample(event.body, event.at),
@@ -240,7 +256,7 @@ impl<'s> Simulation<'s> {
     /// Starts the method of the groups of these bodies, and what is known of their true motion:
     /// from now until an event touches them.
     fn set_out(&mut self, bodies: &[usize], schedule: &Schedule<'_>, chooser: &mut dyn Choose) {
-        let mut groups: Vec<usize> = bodies.iter().map(|body| body / self.width).collect();
+        let mut groups: Vec<usize> = bodies.iter().map(|&body| self.home[body]).collect();
         groups.dedup();
         let now = schedule.now().time;
         for group in groups {
@@ -261,7 +277,7 @@ impl<'s> Simulation<'s> {
             let until = schedule.until(touches);
             truth
                 .borrow_mut()
-                .set_out((self.scene, &self.active), (now, until), simulated);
+                .set_out(self.acting(), (now, until), simulated);
         }
     }
 
@@ -422,7 +438,7 @@ impl<'s> Simulation<'s> {
                 Happening::Ends(k) => self.active.retain(|&active| active != k),
                 Happening::Begins(k) => {
                     let body = self.scene.events[k].body;
-                    *jump = begin(&mut self.groups[body / self.width], self.scene, k);
+                    *jump = begin(&mut self.groups[self.home[body]], self.scene, k);
                     if let (Some(_), Some(truth)) = (&jump, self.truths.get_mut(body)) {
                         strike(truth.get_mut(), &self.scene.events[k], now.time);
                     }
@@ -433,7 +449,12 @@ impl<'s> Simulation<'s> {
             }
         }
         for body in self.touched(happenings) {
-            self.groups[body / self.width].load(self.scene, &self.active);
+            let acting = Acting {
+                scene: self.scene,
+                active: &self.active,
+                off: &self.off,
+            };
+            self.groups[self.home[body]].load(acting);
         }
         for (happening, &jump) in happenings.iter().zip(&jumps) {
             let event = &self.scene.events[happening.event()];
@@ -498,7 +519,15 @@ impl<'s> Simulation<'s> {
     }
 
     fn group_of(&self, body: usize) -> &Group {
-        &self.groups[body / self.width]
+        &self.groups[self.home[body]]
+    }
+
+    fn acting(&self) -> Acting<'_> {
+        Acting {
+            scene: self.scene,
+            active: &self.active,
+            off: &self.off,
+        }
     }
 
     fn samples(&self, t: f64) -> Vec<Sample> {
@@ -531,7 +560,7 @@ fn truths(scene: &Scene) -> Vec<RefCell<Truth>> {
     {
         return Vec::new();
     }
-    let alone = group::groups(&scene.bodies, 1);
+    let alone = group::groups(scene, 1);
     alone
         .into_iter()
         .map(|body| RefCell::new(Truth::new(body)))

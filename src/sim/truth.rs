@@ -6,10 +6,10 @@
 //! body, and of the angular momentum what lies along them.
 
 use super::choose::{Choice, Stated};
-use super::group::{Group, Weight};
+use super::group::{Acting, Group, Weight};
 use crate::integrator::{Kind, METHODS, Method, Step};
 use crate::math::angle_between;
-use crate::scene::{Framed, Scene};
+use crate::scene::Framed;
 use crate::trace::{Deviation, Sample, Subject};
 use nalgebra::{Unit, Vector3};
 
@@ -77,7 +77,7 @@ impl Truth {
     /// Goes on under what acts from `t` until `until`; `simulated` is the body as it is now.
     pub fn set_out(
         &mut self,
-        (scene, active): (&Scene, &[usize]),
+        acting: Acting<'_>,
         (t, until): (f64, f64),
         simulated: Simulated<'_>,
     ) {
@@ -85,10 +85,10 @@ impl Truth {
         let exact = match (known, closed_form()) {
             (Known::Exact { mut body, mut now }, Some(method)) => {
                 move_to(&mut body, &mut now, t);
-                body.load(scene, active);
+                body.load(acting);
                 let takes = body.refusal(method).is_none();
                 takes.then(|| {
-                    let mut exactly = Stated(Choice {
+                    let mut exactly = Stated::by(Choice {
                         method,
                         pieces: 1,
                         tolerance: f64::EPSILON,

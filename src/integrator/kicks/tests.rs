@@ -200,8 +200,8 @@ fn damping_and_the_tutorials_model_cost_no_order_beside_a_torque() {
         if !gyro {
             effect("gravity", Value::Vector(-Vector3::z()), &mut load);
         }
-        let rates = vec![Some(0.1), Some(0.3), None, None];
-        effect("damping", Value::Table(rates), &mut load);
+        let rates = Value::numbers(&[("linear", 0.1), ("angular", 0.3)]);
+        effect("damping", rates, &mut load);
         let bodies = (inertials, states);
         // Long enough for small steps to be needed.
         let t = 10.0;

@@ -233,7 +233,7 @@ fn nothing_depends_on_how_the_clock_cuts_the_time() {
         if decaying {
             effect(
                 "damping",
-                Value::Table(vec![Some(0.1), Some(0.2), None, None]),
+                Value::numbers(&[("linear", 0.1), ("angular", 0.2)]),
                 &mut load,
             );
         }
