@@ -7,7 +7,8 @@ use common::Nowhere;
 use nalgebra::Vector3;
 use std::fmt::Write as _;
 use std::ops::Range;
-use torquescope::cost::Plan;
+use torquescope::cost::{Plan, Race};
+use torquescope::integrator::find;
 use torquescope::scene::{Scene, Stepping};
 use torquescope::sim::{Outcome, Simulation};
 use torquescope::trace::{Instant, Motion, Note, Sample, Sink, SinkError, Track};
@@ -51,7 +52,7 @@ fn brick(name: &str, more: &str) -> String {
 }
 
 /// Every effect on body `a` alone, by its short text.
-const EFFECTS: [(&str, &str); 9] = [
+const EFFECTS: [(&str, &str); 10] = [
     ("gravity", "gravity = [0.0, -9.81, 0.0]"),
     ("damping", "damping = { angular = 0.3, linear = 0.1 }"),
     ("gyroscopic", "gyroscopic = true"),
@@ -62,6 +63,10 @@ const EFFECTS: [(&str, &str); 9] = [
     (
         "motor",
         "motor = { orientation = { axis = [0, 1, 0], degrees = 40 }, stiffness = 3.0, damping = 0.1, limit = 1.0 }",
+    ),
+    (
+        "motor",
+        "motor = { axis = [0, 1, 0], ramp = { to = 0.5, over = 0.3141 } }",
     ),
     (
         "spring",
@@ -426,5 +431,48 @@ fn an_accuracy_is_kept_under_every_effect_that_has_a_law_of_motion() {
         let ours = simulation.run_by(&mut plan.chooser(), &mut Nowhere).0.end;
         let off = torquescope::math::angle_between(ours[0].motion.q_wb, truth[0].motion.q_wb);
         assert!(off < 1e-8, "{text}: {off:e}");
+    }
+}
+
+/// The largest angle from the first body of a race.
+struct Farthest(f64);
+
+impl Sink for Farthest {
+    fn motions(&mut self, _: &Track<'_>) -> Result<(), SinkError> {
+        Ok(())
+    }
+    fn samples(&mut self, _: Instant, _: Range<usize>, all: &[Sample]) -> Result<(), SinkError> {
+        let off = all.iter().filter_map(|sample| sample.deviation.attitude);
+        self.0 = off.fold(self.0, f64::max);
+        Ok(())
+    }
+    fn note(&mut self, _: Instant, _: &Note) -> Result<(), SinkError> {
+        Ok(())
+    }
+}
+
+#[test]
+fn in_a_race_every_runner_has_the_anchor_and_the_planet_where_the_first_has_them() {
+    for text in [
+        "spring = { anchor = [0, 1, 0], point = [0.5, 0, 0], stiffness = 4.0 }",
+        "gravity_gradient = { mu = 2.0, orbit = true, centre = [3, 0, 0] }",
+        "motor = { torque = [0.1, 0.2, 0.3] }",
+    ] {
+        let source = format!(
+            "duration = 1.0\n{}{}[[effect]]\n{text}\nbodies = [\"a\"]\n[[effect]]\nname = \"air\"\ndrag = {{ quadratic = 1 }}\nbodies = [\"b\"]\n",
+            brick("a", "method = \"jolt\""),
+            brick("b", "")
+        );
+        let methods = ["rk4", "dop853"].map(|name| find(name).unwrap());
+        let race = Race::new(&scene(&source), &methods, 1e-3, 5.0).unwrap();
+        assert_eq!(race.scene.bodies.len(), 3);
+        let mut farthest = Farthest(0.0);
+        race.run(&mut farthest).unwrap();
+        // rk4 at 1e-3 s, dop853 at the race's tolerance of 1e-6; an anchor left behind is metres off.
+        assert!(
+            farthest.0 > 0.0 && farthest.0 < 1e-5,
+            "{text}: {:e}",
+            farthest.0
+        );
     }
 }
