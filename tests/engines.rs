@@ -7,8 +7,8 @@
 
 use nalgebra::{Matrix3, Quaternion, Vector3};
 use std::sync::Arc;
-use torquescope::body::{Inertial, InertialBlock, State, StateBlock};
-use torquescope::effect::{Called, Couple, EFFECTS, Effect, Frame, Load, Value, WrenchBlock};
+use torquescope::body::{Inertial, InertialBlock, LaneSet, State, StateBlock};
+use torquescope::effect::{Couple, EFFECTS, Effect, Frame, Load, Value, WrenchBlock};
 use torquescope::integrator::{Interval, Step, find};
 use torquescope::mass::MassProperties;
 
@@ -35,6 +35,10 @@ impl Effect for Viscous {
         "viscous"
     }
 
+    fn lanes(&self) -> LaneSet {
+        LaneSet::ALL
+    }
+
     fn add(&self, _: f64, _: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {
         wrench.add_torque(0, state.get(0).omega_w * -self.0);
     }
@@ -42,12 +46,10 @@ impl Effect for Viscous {
 
 fn effect(name: &str, value: &Value, load: &mut Load) {
     let kind = EFFECTS.iter().find(|kind| kind.name == name).unwrap();
-    match (kind.make)(value, 1.0).unwrap() {
-        Called::Load(effect) => load.push(effect),
-        Called::Decay(decay) => load.set_decay(decay),
-        Called::Gyroscopic => load.set_gyroscopic(),
-        Called::Off => panic!("{name} is off"),
-    }
+    let called = (kind.make)(value, 1.0).unwrap();
+    // Terms of the model, which act on all bodies of a block.
+    assert!(called.is_model_term());
+    load.call(&name.into(), &called, &[]);
 }
 
 fn load(gyroscopic: bool, torque: bool, damp: Damp) -> Load {
@@ -64,12 +66,12 @@ fn load(gyroscopic: bool, torque: bool, damp: Damp) -> Load {
     match damp {
         Damp::None => {}
         Damp::Rate(c) => {
-            let rates = vec![None, Some(c), None, None];
-            effect("damping", &Value::Table(rates), &mut load);
+            let rates = Value::numbers(&[("angular", c)]);
+            effect("damping", &rates, &mut load);
         }
         Damp::Left(part) => {
-            let rates = vec![None, None, None, Some(part)];
-            effect("damping", &Value::Table(rates), &mut load);
+            let rates = Value::numbers(&[("angular_factor", part)]);
+            effect("damping", &rates, &mut load);
         }
         Damp::Torque(d) => load.push(Arc::new(Viscous(d))),
     }

@@ -119,7 +119,9 @@ fn the_damped_box_goes_where_the_undamped_one_went() {
     assert!((l1 - l0 * left).norm() < 1e-9 * l1.norm());
     // The same box undamped, after (1 - e^{-ct})/c.
     let mut undamped = scene.clone();
-    undamped.effects.retain(|(name, _)| *name == "gyroscopic");
+    undamped
+        .effects
+        .retain(|effect| effect.kind == "gyroscopic");
     undamped.duration = (1.0 - left) / 0.25;
     let (_, there, _) = run(&undamped);
     let angle = last.motion.q_wb.angle_to(&there.end[0].motion.q_wb);

@@ -3,8 +3,8 @@
 #![expect(clippy::excessive_precision, reason = "digits as they were found")]
 
 use nalgebra::{Quaternion, Vector3};
-use torquescope::body::{Inertial, InertialBlock, State, StateBlock};
-use torquescope::effect::{Called, EFFECTS, Load, Value};
+use torquescope::body::{Inertial, InertialBlock, LANES, State, StateBlock};
+use torquescope::effect::{EFFECTS, Load, Member, Value};
 use torquescope::integrator::{Interval, Method, Step, Stepper};
 
 /// How long both take, s.
@@ -43,8 +43,10 @@ pub fn top() -> Problem {
     load.set_gyroscopic();
     let gravity = EFFECTS.iter().find(|effect| effect.name == "gravity");
     let down = Value::Vector(Vector3::new(0.0, 0.0, -1.0));
-    if let Some(Ok(Called::Load(gravity))) = gravity.map(|gravity| (gravity.make)(&down, 1.0)) {
-        load.push(gravity);
+    if let Some(Ok(gravity)) = gravity.map(|gravity| (gravity.make)(&down, 1.0)) {
+        let inertial = InertialBlock::default();
+        let members = (0..LANES).map(|lane| Member::plain(lane, inertial.get(lane)));
+        load.call(&"gravity".into(), &gravity, &members.collect::<Vec<_>>());
     }
     let moments = Vector3::new(1.0, 1.6, 2.1);
     let q0 = Quaternion::new(0.86_f64.sqrt(), 0.1, 0.3, -0.2);

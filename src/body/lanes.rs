@@ -9,6 +9,34 @@ use nalgebra::{Quaternion, Vector3};
 /// Bodies in a block.
 pub const LANES: usize = 8;
 
+/// Some of the eight lanes of a block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LaneSet(u8);
+
+impl LaneSet {
+    pub const ALL: Self = Self(u8::MAX);
+
+    pub fn one(lane: usize) -> Self {
+        Self(1 << lane)
+    }
+
+    #[inline(always)]
+    pub fn holds(self, lane: usize) -> bool {
+        self.0 >> lane & 1 == 1
+    }
+
+    /// The lanes, in order.
+    pub fn iter(self) -> impl Iterator<Item = usize> {
+        (0..LANES).filter(move |&lane| self.holds(lane))
+    }
+}
+
+impl FromIterator<usize> for LaneSet {
+    fn from_iter<T: IntoIterator<Item = usize>>(lanes: T) -> Self {
+        Self(lanes.into_iter().fold(0, |set, lane| set | 1 << lane))
+    }
+}
+
 /// One number of each of the eight bodies.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]

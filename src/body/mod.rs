@@ -8,5 +8,5 @@ mod lanes;
 mod state;
 
 pub use inertial::{Inertial, InertialBlock};
-pub use lanes::{LANES, Lanes, QuaternionLanes, Vector3Lanes};
+pub use lanes::{LANES, LaneSet, Lanes, QuaternionLanes, Vector3Lanes};
 pub use state::{State, StateBlock};

@@ -88,7 +88,7 @@ struct Interval {
     bodies: Vec<String>,
     from: f64,
     until: f64,
-    active: Vec<&'static str>,
+    active: Vec<String>,
     method: &'static str,
     step: Option<f64>,
     /// Of a method with steps of its own.

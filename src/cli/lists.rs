@@ -152,17 +152,40 @@ pub fn effects(arguments: &Arguments) -> anyhow::Result<()> {
     )
 }
 
+/// How a scene writes it, units after the keys.
 fn written(name: &str, argument: Argument) -> String {
     match argument {
         Argument::Switch => format!("{name} = true"),
+        Argument::Number(unit) => format!("{name} = x  # {unit}"),
         Argument::Vector(unit) => format!("{name} = [x, y, z]  # {unit}"),
-        Argument::Table(keys) => {
-            let keys: Vec<String> = keys
-                .iter()
-                .map(|(key, unit)| format!("{key} ({unit})"))
-                .collect();
-            format!("{name} = {{ {} }}", keys.join(", "))
+        Argument::Table(keys) => format!("{name} = {{ {} }}", entries(keys)),
+        Argument::Amount(_) | Argument::Word(_) | Argument::Attitude | Argument::Point => {
+            entry(name, argument)
         }
+    }
+}
+
+fn entries(keys: &[(&str, Argument)]) -> String {
+    let keys: Vec<String> = keys
+        .iter()
+        .map(|&(key, argument)| entry(key, argument))
+        .collect();
+    keys.join(", ")
+}
+
+fn entry(key: &str, argument: Argument) -> String {
+    match argument {
+        Argument::Switch => format!("{key} = true"),
+        Argument::Number(unit) => format!("{key} ({unit})"),
+        Argument::Vector(unit) => format!("{key} = [x, y, z] ({unit})"),
+        Argument::Amount(unit) => format!("{key} = a or [x, y, z] ({unit})"),
+        Argument::Word(words) => {
+            let words: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+            format!("{key} = {}", words.join(" or "))
+        }
+        Argument::Attitude => format!("{key} = {{ axis, degrees }} or [x, y, z, w]"),
+        Argument::Point => format!("{key} = a name or [x, y, z] (m)"),
+        Argument::Table(keys) => format!("{key} = {{ {} }}", entries(keys)),
     }
 }
 

@@ -149,13 +149,17 @@ pub fn run(scene: &Scene, chooser: &mut dyn Choose) -> Result<Run, SimError> {
     })
 }
 
-/// The same scene with nothing recorded but the instants to compare, `rate` a second.
+/// The same scene with nothing recorded but the instants to compare, `rate` a second, and no body with a
+/// method of its own.
 pub fn bare(scene: &Scene, step: f64, rate: f64) -> Scene {
     let mut scene = scene.clone();
     scene.step = step;
     scene.record.rate = rate;
     scene.record.state = StateRate::PerSecond(rate);
     scene.record.streams = StreamSet::none();
+    for body in &mut scene.bodies {
+        body.method = None;
+    }
     scene
 }
 

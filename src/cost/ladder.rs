@@ -238,7 +238,7 @@ impl Climb<'_> {
         let mut run = None;
         while times.len() < self.ladder.repeats || (spent < ENOUGH && times.len() < 50) {
             let start = Instant::now();
-            let once = check::run(&scene, &mut Stated(choice));
+            let once = check::run(&scene, &mut Stated::by(choice));
             let took = once
                 .as_ref()
                 .map_or_else(|_| start.elapsed(), |run| run.took);
@@ -282,7 +282,7 @@ impl Climb<'_> {
             steps: work.steps as f64 / scene.duration,
             bytes: {
                 scene.record = self.record.clone();
-                (self.weigh)(&scene, &mut Stated(choice))
+                (self.weigh)(&scene, &mut Stated::by(choice))
             },
             on_front: false,
             own: false,

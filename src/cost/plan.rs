@@ -14,7 +14,7 @@ use super::reference::{Reference, by_truth, exact_to, truest};
 use crate::body::{Inertial, State, StateBlock};
 use crate::integrator::{Kind, Method, Step};
 use crate::scene::{Scene, Stepping};
-use crate::sim::{Choice, Choose, Setting, SimError};
+use crate::sim::{Choice, Choose, Setting, SimError, Stated};
 use crate::trace::short;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::collections::HashMap;
@@ -29,7 +29,7 @@ pub struct Planned {
     pub from: f64,
     pub until: f64,
     /// What is active, by name.
-    pub effects: Vec<&'static str>,
+    pub effects: Vec<String>,
     pub choice: Choice,
     /// Of the method's own step, s; none where it has none.
     pub step: Option<f64>,
@@ -76,27 +76,30 @@ impl Plan {
     pub fn of(scene: &Scene) -> Result<Self, PlanError> {
         let reference = Reference::of(scene)?;
         match scene.stepping {
-            Stepping::Method {
-                method, tolerance, ..
-            } => Self::by_method(scene, &reference, method, tolerance),
-            Stepping::Accuracy(asked) => Self::by_accuracy(scene, &reference, asked),
+            Stepping::Method { method, tolerance } => {
+                let usual = Choice {
+                    method,
+                    pieces: 1,
+                    tolerance,
+                };
+                let stated = Stated::where_none_is_own(scene, usual);
+                Self::by_method(scene, &reference, stated)
+            }
+            Stepping::Accuracy(asked) => {
+                let reference = match reference.uncertainty < asked {
+                    true => reference,
+                    false => reference.finer(scene)?,
+                };
+                Self::by_accuracy(scene, &reference, asked)
+            }
         }
     }
 
-    fn by_method(
-        scene: &Scene,
-        reference: &Reference,
-        method: &'static dyn Method,
-        tolerance: f64,
-    ) -> Result<Self, PlanError> {
+    fn by_method(scene: &Scene, reference: &Reference, stated: Stated) -> Result<Self, PlanError> {
         let mut planner = Planner {
             clock: scene.step,
             duration: scene.duration,
-            way: Way::Stated(Choice {
-                method,
-                pieces: 1,
-                tolerance,
-            }),
+            way: Way::Stated(stated),
             log: Vec::new(),
             last: HashMap::new(),
         };
@@ -216,7 +219,7 @@ impl Choose for Replay {
 }
 
 enum Way {
-    Stated(Choice),
+    Stated(Stated),
     Truest,
     Cheapest {
         /// Of the whole scene's error, rad.
@@ -236,10 +239,10 @@ struct Planner {
 
 impl Choose for Planner {
     fn choose(&mut self, setting: &Setting<'_>) -> Choice {
-        let (choice, expected) = match self.way {
-            Way::Stated(choice) => (choice, None),
+        let (choice, expected) = match &mut self.way {
+            Way::Stated(stated) => (stated.choose(setting), None),
             Way::Truest => (truest(setting.interval, 0), None),
-            Way::Cheapest { share } => self.cheapest(setting, share),
+            &mut Way::Cheapest { share } => self.cheapest(setting, share),
         };
         let step = match choice.method.info().kind {
             Kind::Fixed => {

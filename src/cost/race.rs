@@ -4,9 +4,10 @@
 use super::check;
 use super::ladder::refusal;
 use super::reference::truest;
+use crate::effect::Called;
 use crate::integrator::{Kind, Method};
 use crate::math::angle_between;
-use crate::scene::{Action, Event, Framed, Scene, Target};
+use crate::scene::{Action, Event, Framed, Scene, SceneEffect, Target};
 use crate::sim::{Choice, Choose, Setting, SimError, Simulation};
 use crate::trace::{Instant, Note, Sample, Sink, SinkError, Track};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -35,6 +36,7 @@ impl Race {
     ) -> Result<Self, SimError> {
         let mut alone = scene.clone();
         alone.bodies.truncate(1);
+        alone.bodies.iter_mut().for_each(|body| body.method = None);
         alone.events.retain(|event| match &event.target {
             Target::Body(body) | Target::Log(Some(body)) => *body == 0,
             Target::Hit(_) | Target::All | Target::Log(None) => true,
@@ -99,9 +101,12 @@ fn lined_up(alone: &Scene, runners: &[Option<Choice>], apart: f64) -> Scene {
     scene.events.clear();
     // Wider than high, as screens are.
     let columns = (2.0 * runners.len() as f64).sqrt().ceil().max(1.0) as usize;
+    let place = |k: usize| Vector3::new((k % columns) as f64, -((k / columns) as f64), 0.0) * apart;
+    let places: Vec<Vector3<f64>> = (0..runners.len()).map(place).collect();
+    let (effects, became) = effects_of_runners(alone, &places);
+    scene.effects = effects;
     for (k, runner) in runners.iter().enumerate() {
-        let (row, column) = ((k / columns) as f64, (k % columns) as f64);
-        let shift_w = Vector3::new(column, -row, 0.0) * apart;
+        let shift_w = places[k];
         let name = runner.map_or("true", |choice| choice.method.info().name);
         for body in &alone.bodies {
             let mut body = body.clone();
@@ -115,14 +120,55 @@ fn lined_up(alone: &Scene, runners: &[Option<Choice>], apart: f64) -> Scene {
             .events
             .extend(events.filter_map(|event| of_runner(event, k, shift_w)));
     }
+    for event in &alone.events {
+        if let Action::Switch { effect, on } = event.action {
+            scene
+                .events
+                .extend(became[effect].clone().map(|effect| Event {
+                    action: Action::Switch { effect, on },
+                    ..event.clone()
+                }));
+        }
+    }
     scene
 }
 
-/// An event as it happens to the k-th runner; what happens to all happens with the first.
+/// The effects of the first body as all runners have them, and what each of the scene's effects became: of
+/// what is fixed in the world each runner has its own.
+fn effects_of_runners(
+    alone: &Scene,
+    places: &[Vector3<f64>],
+) -> (Vec<SceneEffect>, Vec<Range<usize>>) {
+    let mut effects = Vec::new();
+    let became = alone.effects.iter().map(|effect| {
+        let first = effects.len();
+        if !effect.concerns(0) {
+            return first..first;
+        }
+        match moved(effect, Vector3::zeros()) {
+            None => effects.push(SceneEffect {
+                bodies: None,
+                ..effect.clone()
+            }),
+            Some(_) => effects.extend(places.iter().enumerate().filter_map(|(k, &place)| {
+                Some(SceneEffect {
+                    bodies: Some(vec![k]),
+                    ..moved(effect, place)?
+                })
+            })),
+        }
+        first..effects.len()
+    });
+    let became = became.collect();
+    (effects, became)
+}
+
+/// An event as it happens to the k-th runner; a note is written with the first.
 fn of_runner(mut event: Event, k: usize, shift_w: Vector3<f64>) -> Option<Event> {
     event.target = match event.target {
         Target::Body(_) => Target::Body(k),
         Target::Hit(_) => Target::Hit(k..k + 1),
+        Target::All => return None,
         target => return (k == 0).then_some(Event { target, ..event }),
     };
     match &mut event.action {
@@ -140,6 +186,16 @@ fn of_runner(mut event: Event, k: usize, shift_w: Vector3<f64>) -> Option<Event>
         _ => {}
     }
     Some(event)
+}
+
+/// An effect that has something fixed in the world, with that elsewhere.
+fn moved(effect: &SceneEffect, by_w: Vector3<f64>) -> Option<SceneEffect> {
+    let Called::Load(spec) = &effect.called else {
+        return None;
+    };
+    let mut effect = effect.clone();
+    effect.called = Called::Load(spec.moved(by_w)?);
+    Some(effect)
 }
 
 struct ByBody<'a>(&'a [Option<Choice>]);

@@ -41,7 +41,24 @@ const RANKS: usize = 6;
 
 impl Reference {
     pub fn of(scene: &Scene) -> Result<Self, SimError> {
-        let (rank, first, run) = Self::first_from(scene, 0)?;
+        Self::by_pieces(scene, FINE)
+    }
+
+    /// The same with smaller steps, where methods of fixed steps had a part in it: where a force has a kink
+    /// they are of second order.
+    pub fn finer(self, scene: &Scene) -> Result<Self, SimError> {
+        let fixed = |name: &&'static str| {
+            let found = METHODS.iter().find(|method| method.info().name == *name);
+            found.is_some_and(|method| method.info().kind == Kind::Fixed)
+        };
+        match self.by.iter().chain(&self.checked_by).any(fixed) {
+            true => Self::by_pieces(scene, FINEST),
+            false => Ok(self),
+        }
+    }
+
+    fn by_pieces(scene: &Scene, pieces: u32) -> Result<Self, SimError> {
+        let (rank, first, run) = Self::first_from(scene, 0, pieces)?;
         if first.all_closed {
             return Ok(Self {
                 run,
@@ -50,7 +67,7 @@ impl Reference {
                 checked_by: Vec::new(),
             });
         }
-        let (_, second, other) = Self::first_from(scene, rank + 1)?;
+        let (_, second, other) = Self::first_from(scene, rank + 1, pieces)?;
         Ok(Self {
             uncertainty: run.apart(&other).max(EXACT),
             run,
@@ -60,10 +77,14 @@ impl Reference {
     }
 
     /// The run by the first rank from `from` on that follows the scene to its end.
-    fn first_from(scene: &Scene, from: usize) -> Result<(usize, Truest, Run), SimError> {
+    fn first_from(
+        scene: &Scene,
+        from: usize,
+        pieces: u32,
+    ) -> Result<(usize, Truest, Run), SimError> {
         let mut rank = from;
         loop {
-            let mut truest = Truest::new(rank);
+            let mut truest = Truest::new(rank, pieces);
             match check::run(scene, &mut truest) {
                 Ok(run) => return Ok((rank, truest, run)),
                 Err(SimError::NotFinite { .. }) if rank < RANKS => rank += 1,
@@ -76,6 +97,8 @@ impl Reference {
 /// Takes the truest method that an interval allows, or the one after it.
 struct Truest {
     rank: usize,
+    /// Of a step of the clock, for methods of fixed steps.
+    pieces: u32,
     all_closed: bool,
     used: Vec<&'static str>,
     /// By first body of a group: how far the closed form is off so far, rad.
@@ -83,9 +106,10 @@ struct Truest {
 }
 
 impl Truest {
-    fn new(rank: usize) -> Self {
+    fn new(rank: usize, pieces: u32) -> Self {
         Self {
             rank,
+            pieces,
             all_closed: true,
             used: Vec::new(),
             off: BTreeMap::new(),
@@ -95,8 +119,11 @@ impl Truest {
 
 impl Choose for Truest {
     fn choose(&mut self, setting: &Setting<'_>) -> Choice {
-        let choice = truest(setting.interval, self.rank);
+        let mut choice = truest(setting.interval, self.rank);
         let info = choice.method.info();
+        if info.kind == Kind::Fixed {
+            choice.pieces = self.pieces;
+        }
         self.all_closed &= info.kind == Kind::Closed;
         *self.off.entry(setting.members.start).or_default() += exact_to(setting);
         if !self.used.contains(&info.name) {
@@ -128,6 +155,8 @@ pub fn by_truth(interval: &Interval) -> Vec<&'static dyn Method> {
 
 /// Pieces of a clock step for a reference by fixed steps: an order of 4 then gains 1e7.
 const FINE: u32 = 64;
+/// Where that is not enough.
+const FINEST: u32 = 1024;
 
 pub fn truest(interval: &Interval, rank: usize) -> Choice {
     let methods = by_truth(interval);

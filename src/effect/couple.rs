@@ -1,7 +1,7 @@
 //! A pure torque on one body: a motor, or a couple of equal and opposite forces.
 
 use super::{Effect, Frame, Term, WrenchBlock};
-use crate::body::{InertialBlock, StateBlock};
+use crate::body::{InertialBlock, LaneSet, StateBlock};
 
 /// A torque on one lane of a block while it lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +21,8 @@ impl Effect for Couple {
         wrench.add_torque(self.lane, tau_w);
     }
 
-    fn lane(&self) -> Option<usize> {
-        Some(self.lane)
+    fn lanes(&self) -> LaneSet {
+        LaneSet::one(self.lane)
     }
 
     fn terms(&self, _: &InertialBlock) -> Option<Vec<Term>> {

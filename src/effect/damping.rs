@@ -4,27 +4,22 @@
 //! velocity round. The tutorial's form, a factor per frame, is the rate `c = -ln(factor)/h` at
 //! the scene's step h; a method that damps once a step applies its factor as it was written.
 
-use super::{Argument, Called, EffectKind, Value};
+use super::{Argument, Called, EffectKind};
 
 pub const KIND: EffectKind = EffectKind {
     name: "damping",
     argument: Argument::Table(&[
-        ("linear", "1/s"),
-        ("angular", "1/s"),
-        ("linear_factor", "per step"),
-        ("angular_factor", "per step"),
+        ("linear", Argument::Number("1/s")),
+        ("angular", Argument::Number("1/s")),
+        ("linear_factor", Argument::Number("per step")),
+        ("angular_factor", Argument::Number("per step")),
     ]),
     equation: "dω/dt = -c ω, dv/dt = -k v",
     about: "a rate (linear, angular) or, as the tutorial does it, a factor per step (linear_factor, angular_factor); exact in time",
     make: |value, step| {
-        let Value::Table(values) = value else {
-            return Ok(Called::Off);
-        };
-        let &[linear, angular, linear_factor, angular_factor] = values.as_slice() else {
-            return Ok(Called::Off);
-        };
-        let linear = Rate::new("linear", linear, linear_factor, step)?;
-        let angular = Rate::new("angular", angular, angular_factor, step)?;
+        let get = |key: &str| value.number(key);
+        let linear = Rate::new("linear", get("linear"), get("linear_factor"), step)?;
+        let angular = Rate::new("angular", get("angular"), get("angular_factor"), step)?;
         Ok(match (linear, angular) {
             (Rate::NONE, Rate::NONE) => Called::Off,
             (linear, angular) => Called::Decay(Decay { linear, angular }),
@@ -43,6 +38,15 @@ impl Decay {
     /// Whether it was written as a factor per step.
     pub fn is_per_step(&self) -> bool {
         self.linear.written.is_some() || self.angular.written.is_some()
+    }
+
+    /// Both at once: rates add, factors multiply.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            linear: self.linear.and(other.linear),
+            angular: self.angular.and(other.angular),
+        }
     }
 
     /// 1/s.
@@ -159,6 +163,19 @@ impl Rate {
                 "{name}_factor = {factor} is not above 0 and at most 1; it multiplies the velocity \
                  at every step, 1 being no damping"
             )),
+        }
+    }
+
+    fn and(self, other: Self) -> Self {
+        let written = match (self.written, other.written) {
+            (Some((step, a)), Some((same, b))) if step == same => Some((step, a * b)),
+            (written, None) if other.rate == 0.0 => written,
+            (None, written) if self.rate == 0.0 => written,
+            _ => None,
+        };
+        Self {
+            rate: self.rate + other.rate,
+            written,
         }
     }
 

@@ -1,6 +1,6 @@
 //! The model and everything that acts on one block of bodies, between two events.
 
-use super::{Decay, Depends, Effect, Term};
+use super::{Called, Decay, Depends, Effect, Member, SpeedLimit, Term};
 use crate::body::{InertialBlock, State, StateBlock, Vector3Lanes};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -44,24 +44,46 @@ impl WrenchBlock {
 #[derive(Clone, Debug, Default)]
 pub struct Load {
     gyroscopic: bool,
-    effects: Vec<Arc<dyn Effect>>,
+    /// Each with the name that the scene has for it.
+    effects: Vec<(Arc<str>, Arc<dyn Effect>)>,
+    decays: Vec<(Arc<str>, Decay)>,
+    /// All of them at once.
     decay: Option<Decay>,
+    limit: Option<SpeedLimit>,
     /// What is applied, where that is known never to change.
     constant: Option<WrenchBlock>,
 }
 
 impl Load {
+    /// Adds an effect by its own name.
     pub fn push(&mut self, effect: Arc<dyn Effect>) {
-        self.effects.push(effect);
-        self.constant = None;
+        self.push_named(effect.name().into(), effect);
     }
 
-    pub fn set_decay(&mut self, decay: Decay) {
-        self.decay = Some(decay);
+    pub fn push_named(&mut self, name: Arc<str>, effect: Arc<dyn Effect>) {
+        self.effects.push((name, effect));
+        self.constant = None;
     }
 
     pub fn set_gyroscopic(&mut self) {
         self.gyroscopic = true;
+    }
+
+    /// Adds what a scene calls for, acting on these bodies of the block; a term of the model acts on
+    /// all of them.
+    pub fn call(&mut self, name: &Arc<str>, called: &Called, members: &[Member<'_>]) {
+        match called {
+            Called::Load(spec) => self.push_named(Arc::clone(name), spec.on(members)),
+            Called::Gyroscopic => self.gyroscopic = true,
+            Called::Decay(decay) => {
+                self.decays.push((Arc::clone(name), *decay));
+                self.decay = Some(self.decay.map_or(*decay, |before| before.and(*decay)));
+            }
+            Called::Limit(limit) => {
+                self.limit = Some(self.limit.map_or(*limit, |before| before.and(*limit)));
+            }
+            Called::Off => {}
+        }
     }
 
     /// Whether bodies keep their angular momentum (Euler's equations) and not, as in the
@@ -71,11 +93,26 @@ impl Load {
     }
 
     /// The names of everything that is active, the model's terms included.
-    pub fn names(&self) -> Vec<&'static str> {
+    pub fn names(&self) -> Vec<String> {
         let model = self.gyroscopic.then_some("gyroscopic");
-        let decay = self.decay.map(|_| "damping");
-        let effects = self.effects.iter().map(|effect| effect.name());
-        model.into_iter().chain(decay).chain(effects).collect()
+        let decays = self.decays().map(|(name, _)| name);
+        let limit = self.limit.map(|_| "speed_limit");
+        let effects = self.effects().map(|(name, _)| name);
+        let all = model.into_iter().chain(decays).chain(limit).chain(effects);
+        all.map(str::to_owned).collect()
+    }
+
+    /// Everything that applies a force or a torque, by name, in the order it was added. Each can be asked
+    /// for its own ([`Effect::add`]).
+    pub fn effects(&self) -> impl Iterator<Item = (&str, &dyn Effect)> {
+        let effects = self.effects.iter();
+        effects.map(|(name, effect)| (name.as_ref(), effect.as_ref()))
+    }
+
+    /// Every decay of the velocities, by name.
+    pub fn decays(&self) -> impl Iterator<Item = (&str, &Decay)> {
+        let decays = self.decays.iter();
+        decays.map(|(name, decay)| (name.as_ref(), decay))
     }
 
     /// Whether any force or torque is applied.
@@ -86,6 +123,11 @@ impl Load {
     /// Exponential decay of the velocities, where the scene has it.
     pub fn decay(&self) -> Option<&Decay> {
         self.decay.as_ref()
+    }
+
+    /// What the velocities are cut to after each step, where the scene has it.
+    pub fn limit(&self) -> Option<&SpeedLimit> {
+        self.limit.as_ref()
     }
 
     /// Takes the sum of what is applied once and for all, where it depends on nothing: from here on
@@ -130,27 +172,22 @@ impl Load {
             return self.constant();
         }
         let wrench = room.insert(WrenchBlock::default());
-        for effect in &self.effects {
+        for (_, effect) in &self.effects {
             effect.add(t, inertial, state, wrench);
         }
         Some(wrench)
     }
 
-    /// Every effect that applies a force or torque, in the order they were added.
-    pub fn effects(&self) -> impl Iterator<Item = &dyn Effect> {
-        self.effects.iter().map(|effect| &**effect)
-    }
-
     /// What the applied forces and torques depend on.
     pub fn depends(&self, inertial: &InertialBlock) -> Depends {
-        let each = self.effects.iter().map(|effect| effect.depends(inertial));
+        let each = self.effects().map(|(_, effect)| effect.depends(inertial));
         each.collect()
     }
 
     /// What acts on one lane: not what events do to its neighbours.
-    fn on_lane(&self, lane: usize) -> impl Iterator<Item = &Arc<dyn Effect>> {
-        let own = move |effect: &&Arc<dyn Effect>| effect.lane().is_none_or(|only| only == lane);
-        self.effects.iter().filter(own)
+    fn on_lane(&self, lane: usize) -> impl Iterator<Item = &dyn Effect> {
+        let effects = self.effects().map(|(_, effect)| effect);
+        effects.filter(move |effect| effect.lanes().holds(lane))
     }
 
     /// Whether what is applied to a body changes with time by itself, whatever the body does.
@@ -171,7 +208,7 @@ impl Load {
 
     /// All effects as constant forces and torques, where they are nothing else.
     pub fn terms(&self, inertial: &InertialBlock) -> Option<Vec<Term>> {
-        let each = self.effects.iter().map(|effect| effect.terms(inertial));
+        let each = self.effects().map(|(_, effect)| effect.terms(inertial));
         let terms: Option<Vec<Vec<Term>>> = each.collect();
         Some(terms?.concat())
     }

@@ -5,7 +5,7 @@
 //! it keeps the value at its ends: methods ask at those instants, and rounding may set them beyond.
 
 use super::{Depends, Effect, Term, WrenchBlock};
-use crate::body::{InertialBlock, StateBlock};
+use crate::body::{InertialBlock, LaneSet, StateBlock};
 use std::f64::consts::PI;
 
 /// How what lasts goes through its time.
@@ -78,8 +78,8 @@ impl Effect for Pulsed {
         wrench.add(lane, peak.force_w * part, peak.tau_w * part);
     }
 
-    fn lane(&self) -> Option<usize> {
-        Some(self.peak.lane())
+    fn lanes(&self) -> LaneSet {
+        LaneSet::one(self.peak.lane())
     }
 
     fn depends(&self, _: &InertialBlock) -> Depends {

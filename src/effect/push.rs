@@ -1,7 +1,7 @@
 //! A force at a point of one body: `F`, and the torque `(p - x) × F` about its reference point x.
 
 use super::{Effect, Frame, Term, WrenchBlock};
-use crate::body::{InertialBlock, StateBlock};
+use crate::body::{InertialBlock, LaneSet, StateBlock};
 
 /// A force on one lane of a block while it lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,8 +25,8 @@ impl Effect for Push {
         wrench.add(self.lane, force_w, arm_w.cross(&force_w));
     }
 
-    fn lane(&self) -> Option<usize> {
-        Some(self.lane)
+    fn lanes(&self) -> LaneSet {
+        LaneSet::one(self.lane)
     }
 
     fn terms(&self, _: &InertialBlock) -> Option<Vec<Term>> {

@@ -139,6 +139,12 @@ impl MethodInfo {
             .filter(move |name| *name != own)
     }
 
+    /// Whether there is no load that it refuses.
+    pub fn takes_every_load(&self) -> bool {
+        let any = self.accepts == Accepts::Any && self.models == Models::Both;
+        any && self.kind == Kind::Fixed && self.damping != Damping::Refused
+    }
+
     /// Why this load would cost the method its order, if it would.
     pub fn refuses(&self, load: &Load, inertial: &InertialBlock) -> Option<Refusal> {
         let refusal = |why: &str| Some(Refusal(format!("{} {why}", self.name)));
@@ -148,6 +154,11 @@ impl MethodInfo {
         if self.models == Models::Gyroscopic && !load.gyroscopic() {
             return refusal(
                 "moves bodies that keep their angular momentum (gyroscopic = true); in the tutorial's model they keep their angular velocity",
+            );
+        }
+        if load.limit().is_some() && self.kind != Kind::Fixed {
+            return refusal(
+                "gets through time by no steps that it is given, and a speed limit is applied after each of them",
             );
         }
         let depends: Depends = load.depends(inertial);

@@ -23,6 +23,7 @@ mod implicit_gyroscopic;
 mod info;
 mod kicks;
 mod lie_midpoint;
+mod limited;
 mod momentum_restoring;
 mod one_step;
 mod own_steps;
@@ -41,6 +42,7 @@ pub use pieces::Pieces;
 use crate::body::{InertialBlock, LANES, StateBlock};
 use crate::effect::Load;
 use kicks::Kicks;
+use limited::Limited;
 use one_step::Stepped;
 use refused::Refused;
 use std::ops::Range;
@@ -118,11 +120,18 @@ pub trait Method: Sync {
     fn set_out(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper>;
 
     /// The same under any load. One that [`MethodInfo::refuses`] is followed nowhere: states that are no
-    /// numbers, so that nobody takes some other motion for the one asked for.
+    /// numbers, so that nobody takes some other motion for the one asked for. A limit of speeds is kept
+    /// here, for every method of fixed steps alike.
     fn start(&self, interval: Interval, t: f64, state: &StateBlock) -> Box<dyn Stepper> {
-        match self.info().refuses(&interval.load, &interval.inertial) {
-            None => self.set_out(interval, t, state),
-            Some(_) => Box::new(Refused::new(&interval, state)),
+        let info = self.info();
+        if info.refuses(&interval.load, &interval.inertial).is_some() {
+            return Box::new(Refused::new(&interval, state));
+        }
+        match (interval.load.limit(), find(info.name)) {
+            (None, _) => self.set_out(interval, t, state),
+            (Some(_), Some(method)) => Box::new(Limited::new(method, interval, t, state)),
+            // One that is not in the list cannot be found again to set out anew.
+            (Some(_), None) => Box::new(Refused::new(&interval, state)),
         }
     }
 }
@@ -195,5 +204,7 @@ pub fn find(name: &str) -> Option<&'static dyn Method> {
     METHODS.iter().copied().find(named)
 }
 
+#[cfg(test)]
+mod effect_tests;
 #[cfg(test)]
 mod tests;

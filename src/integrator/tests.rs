@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::body::{Inertial, State};
-use crate::effect::{Called, Couple, Depends, EFFECTS, Frame, Value};
+use crate::effect::{Called, Couple, Depends, EFFECTS, Frame, Member, Value};
 use crate::exact::FreeMotion;
 use crate::mass::MassProperties;
 use crate::math::axis_angle;
@@ -11,14 +11,14 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// Adds an effect on all eight lanes, of bodies that are free.
 pub(super) fn effect(name: &str, value: Value, load: &mut Load) {
     let kind = EFFECTS.iter().find(|kind| kind.name == name).unwrap();
-    match (kind.make)(&value, 1.0).unwrap() {
-        Called::Load(effect) => load.push(effect),
-        Called::Decay(decay) => load.set_decay(decay),
-        Called::Gyroscopic => load.set_gyroscopic(),
-        Called::Off => panic!("{name} is off"),
-    }
+    let called = (kind.make)(&value, 1.0).unwrap();
+    assert!(!matches!(called, Called::Off), "{name} is off");
+    let inertial = InertialBlock::default();
+    let members = (0..LANES).map(|lane| Member::plain(lane, inertial.get(lane)));
+    load.call(&name.into(), &called, &members.collect::<Vec<_>>());
 }
 
 pub(super) fn gyroscopic() -> Load {
@@ -29,8 +29,8 @@ pub(super) fn gyroscopic() -> Load {
 
 pub(super) fn damped(rate: f64) -> Load {
     let mut load = Load::default();
-    let rates = vec![Some(rate), Some(rate), None, None];
-    effect("damping", Value::Table(rates), &mut load);
+    let rates = Value::numbers(&[("linear", rate), ("angular", rate)]);
+    effect("damping", rates, &mut load);
     load
 }
 
@@ -155,7 +155,7 @@ pub(super) fn ladder(info: &MethodInfo, error: impl Fn(u32) -> f64) -> Vec<(f64,
 }
 
 /// The methods of fixed steps that take this load.
-fn fixed_methods(
+pub(super) fn fixed_methods(
     load: &Load,
     bodies: &(InertialBlock, StateBlock),
 ) -> impl Iterator<Item = &'static dyn Method> {
@@ -167,7 +167,7 @@ fn fixed_methods(
 
 /// The methods that take this load and choose their own steps, or need none; with the
 /// tolerances to try.
-fn methods_of_own_steps(
+pub(super) fn methods_of_own_steps(
     load: &Load,
     bodies: &(InertialBlock, StateBlock),
 ) -> impl Iterator<Item = (&'static dyn Method, &'static [f64])> {
@@ -296,8 +296,8 @@ fn methods_with_steps_of_their_own_follow_a_damped_free_body() {
     let (c, t): (f64, f64) = (0.3, 4.0);
     let (bodies, exact) = damped_triaxial(c, t);
     let mut load = gyroscopic();
-    let rates = vec![Some(c), Some(c), None, None];
-    effect("damping", Value::Table(rates), &mut load);
+    let rates = Value::numbers(&[("linear", c), ("angular", c)]);
+    effect("damping", rates, &mut load);
     for (method, tolerances) in methods_of_own_steps(&load, &bodies) {
         for &tolerance in tolerances {
             let (end, bound) = by_tolerance(method, tolerance, &load, &bodies, t);
@@ -339,8 +339,8 @@ fn a_damped_free_body_is_the_free_one_at_a_slower_time() {
     let (c, t): (f64, f64) = (0.3, 4.0);
     let (bodies, exact) = damped_triaxial(c, t);
     let mut load = gyroscopic();
-    let rates = vec![Some(c), Some(c), None, None];
-    effect("damping", Value::Table(rates), &mut load);
+    let rates = Value::numbers(&[("linear", c), ("angular", c)]);
+    effect("damping", rates, &mut load);
     for method in fixed_methods(&load, &bodies) {
         is_exact_or_has_order(method, "damped attitude", |n| {
             angle(advance(method, &load, &bodies, t, n).q_wp, exact)
@@ -369,6 +369,10 @@ const B: f64 = 1.7;
 impl crate::effect::Effect for Driven {
     fn name(&self) -> &'static str {
         "driven"
+    }
+
+    fn lanes(&self) -> crate::body::LaneSet {
+        crate::body::LaneSet::ALL
     }
 
     fn add(
@@ -626,6 +630,10 @@ impl crate::effect::Effect for Spring {
         "spring"
     }
 
+    fn lanes(&self) -> crate::body::LaneSet {
+        crate::body::LaneSet::ALL
+    }
+
     fn add(
         &self,
         _: f64,
@@ -748,8 +756,8 @@ fn methods_that_say_so_go_back_the_way_they_came_and_the_others_do_not() {
     let (top, weight, _) = heavy_top();
     let (free, _) = free_triaxial();
     let mut slowing = gyroscopic();
-    let rates = vec![Some(0.1), Some(0.2), None, None];
-    effect("damping", Value::Table(rates), &mut slowing);
+    let rates = Value::numbers(&[("linear", 0.1), ("angular", 0.2)]);
+    effect("damping", rates, &mut slowing);
     for (bodies, load) in [(top, weight), (free, gyroscopic()), (free, slowing)] {
         for method in fixed_methods(&load, &bodies) {
             let end = returned(method, &load, &bodies, 10.0, 100);

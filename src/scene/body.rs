@@ -5,13 +5,16 @@ use super::inertia::{self, Given};
 use super::inertial;
 use super::parts::{self, Filling};
 use super::problem::Problems;
+use super::read;
 use super::swarm::{self, Spread};
 use super::table::{Node, Table, nearest};
+use crate::integrator::Method;
 use crate::mass::solids::{NamedPoint, SOLIDS, Solid, SolidKind};
 use crate::mass::{MassProperties, UnphysicalMass};
 use crate::math::axis_angle;
 use nalgebra::{Matrix3, Quaternion, Unit, UnitQuaternion, Vector3};
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A body as a scene describes it.
@@ -32,6 +35,29 @@ pub struct Body {
     pub q_wb: UnitQuaternion<f64>,
     /// World, rad/s.
     pub omega_w: Vector3<f64>,
+    /// By which it goes in place of the scene's.
+    pub method: Option<OwnMethod>,
+}
+
+/// A method for one body.
+#[derive(Clone, Copy)]
+pub struct OwnMethod {
+    pub method: &'static dyn Method,
+    /// For a method with steps of its own, as [`super::Stepping::Method`] has it.
+    pub tolerance: f64,
+}
+
+impl PartialEq for OwnMethod {
+    fn eq(&self, other: &Self) -> bool {
+        let name = |own: &Self| own.method.info().name;
+        name(self) == name(other) && self.tolerance == other.tolerance
+    }
+}
+
+impl std::fmt::Debug for OwnMethod {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} ({:e})", self.method.info().name, self.tolerance)
+    }
 }
 
 impl Body {
@@ -44,12 +70,12 @@ impl Body {
 }
 
 /// The centre of mass from the shape's origin.
-fn centre(solid: Option<&dyn Solid>) -> Vector3<f64> {
+pub(super) fn centre(solid: Option<&dyn Solid>) -> Vector3<f64> {
     solid.map_or_else(Vector3::zeros, Solid::centre)
 }
 
 /// The points that have a name, from the shape's origin.
-fn points(solid: Option<&dyn Solid>) -> Vec<NamedPoint> {
+pub(super) fn points(solid: Option<&dyn Solid>) -> Vec<NamedPoint> {
     match solid {
         Some(solid) => solid.points(),
         None => vec![("centre".into(), Vector3::zeros())],
@@ -94,6 +120,19 @@ impl Bodies {
             node.problem(format!("names no body of the scene; {remedy}"), problems);
         }
         found
+    }
+
+    /// The bodies of that name: of a swarm all.
+    pub fn find_some(&self, node: &Node<'_>, problems: &mut Problems) -> Option<Range<usize>> {
+        let named = node.quiet_str().and_then(|name| self.names.get(name));
+        if let Some(&Named {
+            first,
+            count: Some(count),
+        }) = named
+        {
+            return Some(first..first + count);
+        }
+        self.find(node, problems).map(|body| body..body + 1)
     }
 
     fn index(&self, name: &str) -> Option<usize> {
@@ -180,8 +219,8 @@ impl Bodies {
 /// What a body is read with.
 #[derive(Clone, Copy)]
 pub(super) struct Context<'a> {
-    /// Whether the scene has the gyroscopic term.
-    pub gyroscopic: bool,
+    /// Whether a body of this name keeps its angular momentum.
+    pub gyroscopic: &'a dyn Fn(&str) -> bool,
     pub files: &'a Files<'a>,
 }
 
@@ -214,8 +253,9 @@ pub(super) fn read_all(
 
 /// A body by its table.
 fn one(table: &Table<'_>, context: Context<'_>, problems: &mut Problems) -> Option<Body> {
+    let name = table.get("name").and_then(|node| node.quiet_str());
     if let Some(node) = table.get("immovable")
-        && context.gyroscopic
+        && (context.gyroscopic)(name.unwrap_or_default())
     {
         node.problem(
             "with gyroscopic = true has no meaning yet: a held axis is the tutorial's, whose model has no gyroscopic term; use a pivot, or switch one of them off",
@@ -281,6 +321,7 @@ fn read(table: &Table<'_>, files: &Files<'_>, problems: &mut Problems) -> Option
     let velocity_w = velocity.as_ref().map(|node| node.vector("m/s", problems));
     let omega_w = vector(table, "angular_velocity", "rad/s", problems);
     let q_wb = orientation(table, problems);
+    let method = own_method(table, problems);
     let mut body = Body {
         label: label.or(name).unwrap_or_default().to_owned(),
         name: name.unwrap_or_default().to_owned(),
@@ -291,6 +332,7 @@ fn read(table: &Table<'_>, files: &Files<'_>, problems: &mut Problems) -> Option
         velocity_w: velocity_w.unwrap_or(Some(Vector3::zeros()))?,
         q_wb: q_wb?,
         omega_w: omega_w?,
+        method: method?,
     };
     if let Some(node) = pivot {
         let pivot = point(&node, &body, problems)?;
@@ -310,6 +352,27 @@ fn read(table: &Table<'_>, files: &Files<'_>, problems: &mut Problems) -> Option
         body.follow_pivot();
     }
     Some(body)
+}
+
+/// The body's own method, if it has one; `None` where what is written is wrong.
+fn own_method(table: &Table<'_>, problems: &mut Problems) -> Option<Option<OwnMethod>> {
+    let (node, tolerance) = (table.get("method"), table.get("tolerance"));
+    let Some(node) = node else {
+        if let Some(node) = tolerance {
+            node.problem(
+                "is for a method of the body's own; name one, or leave it out",
+                problems,
+            );
+            return None;
+        }
+        return Some(None);
+    };
+    let method = read::method(&node, problems)?;
+    let tolerance = match tolerance {
+        None => read::DEFAULT_TOLERANCE,
+        Some(node) => read::tolerance(&node, Some(method), problems)?,
+    };
+    Some(Some(OwnMethod { method, tolerance }))
 }
 
 pub(super) fn vector(

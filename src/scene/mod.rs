@@ -4,6 +4,7 @@
 //! checks again. Units are SI and radians; degrees exist only in the file.
 
 mod body;
+mod effect;
 mod event;
 mod files;
 mod inertia;
@@ -16,13 +17,13 @@ mod read;
 mod swarm;
 mod table;
 
-pub use body::Body;
+pub use body::{Body, OwnMethod};
+pub use effect::SceneEffect;
+pub(crate) use effect::lasting;
 pub use event::{Action, Change, Click, Event, Framed, Target};
 pub use files::{Enclosure, Folder, Library};
-pub(crate) use pairing::lasting;
 pub use problem::Problems;
 
-use crate::effect::Called;
 use crate::integrator::Method;
 use crate::trace::StreamSet;
 use std::io::Read as _;
@@ -47,8 +48,8 @@ pub struct Scene {
     /// Of the clock, s: what a method of fixed steps takes, and how often a state can be recorded.
     pub step: f64,
     pub record: Record,
-    /// The effects that are called for; those switched off are not here.
-    pub effects: Vec<(&'static str, Called)>,
+    /// The effects that are called for, those that are off at first too.
+    pub effects: Vec<SceneEffect>,
     pub bodies: Vec<Body>,
     pub events: Vec<Event>,
 }
@@ -138,11 +139,6 @@ impl Scene {
     /// reason, one that was given another method may.
     pub fn refusal(&self) -> Option<String> {
         pairing::refusal(self)
-    }
-
-    /// Which of the effects are on as the scene starts, in their order.
-    pub fn on_at_start(&self) -> Vec<bool> {
-        vec![true; self.effects.len()]
     }
 
     /// Checks the text of a scene that names no other files; `file` is how messages call it.

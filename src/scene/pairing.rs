@@ -1,17 +1,18 @@
-//! Whether the method a scene names takes the torques that the scene has.
+//! Whether the method that steps a body takes the torques that it has.
 
+use super::effect::lasting;
 use super::problem::Problems;
 use super::table::Table;
 use super::{Action, Body, Scene, Stepping, Target};
 use crate::body::{Inertial, InertialBlock};
-use crate::effect::{Called, Load};
+use crate::effect::{Load, Member};
 use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
-use std::sync::Arc;
 
-/// Why a scene's method does not take it, and which event it is, if it is one.
+/// Why a body's method does not take what acts on it, and which event it is, if it is one.
 struct Unpaired {
     why: String,
+    body: usize,
     event: Option<usize>,
 }
 
@@ -22,16 +23,18 @@ pub(super) fn check(scene: &Scene, top: &Table<'_>, problems: &mut Problems) {
         return;
     }
     let events = top.tables("event", problems);
+    let bodies = top.tables("body", problems);
     // The key `method`: the usual one takes every load, so a method that refuses was named.
     let named = top
         .table("stepping", problems)
         .and_then(|t| t.get("method"));
-    for Unpaired { why, event } in unpaired {
+    for Unpaired { why, body, event } in unpaired {
         let entry = event.and_then(|k| scene.events.get(k)).map(|e| e.entry);
         let table = entry.and_then(|entry| events.get(entry));
-        let span = match table {
-            Some(table) => table.span().clone(),
-            None => named.as_ref().map_or(0..0, |node| node.span.clone()),
+        let own = bodies.get(body).and_then(|table| table.get("method"));
+        let span = match (table, own.as_ref().or(named.as_ref())) {
+            (Some(table), _) => table.span().clone(),
+            (None, node) => node.map_or(0..0, |node| node.span.clone()),
         };
         let remedy = "choose a method that takes it (`torquescope methods`), or state `accuracy` in place of a method";
         problems.add(&span, format!("{why}; {remedy}"));
@@ -51,22 +54,33 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
     let times = Times::of(scene);
     let events = lasting_events(scene, &times);
     // Of bodies alike one after another, as a swarm has them, what is true of one is true of all.
-    let mut before: Option<(&Body, bool)> = None;
+    let mut before: Option<(usize, bool)> = None;
     for (k, body) in scene.bodies.iter().enumerate() {
+        let info = body.method.map_or(method, |own| own.method).info();
+        if info.takes_every_load() {
+            continue;
+        }
         let own = events.of_bodies.get(&k);
-        let known = before.filter(|(other, _)| are_alike(other, body));
+        let known = before.filter(|(other, _)| are_alike(scene, *other, k));
         if let Some((_, refused)) = known
             && (refused || own.is_none())
         {
             continue;
         }
-        before = Some((body, false));
+        before = Some((k, false));
         let (inertial, q_bp) = Inertial::new(&body.properties, body.pivot_b);
+        let member = Member {
+            lane: 0,
+            inertial,
+            q_pb: q_bp.inverse(),
+            body,
+        };
         let mut block = InertialBlock::default();
         block.set(0, inertial);
-        let refuses = |load: Load| method.info().refuses(&load, &block);
+        let refuses = |load: &Load| info.refuses(load, &block);
+        let under = |on: &[bool]| lasting(scene, k, &[member], on);
         let refused = times.sets.iter().find_map(|set| {
-            let refusal = refuses(lasting(scene, &set.on))?;
+            let refusal = refuses(&under(&set.on))?;
             Some((set.by, refusal))
         });
         if let Some((by, refusal)) = refused {
@@ -74,8 +88,12 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
                 None => format!("{}: {refusal}", body.name),
                 Some(_) => format!("after a switch, {}: {refusal}", body.name),
             };
-            found.push(Unpaired { why, event: by });
-            before = Some((body, true));
+            found.push(Unpaired {
+                why,
+                body: k,
+                event: by,
+            });
+            before = Some((k, true));
             continue;
         }
         let own = own.into_iter().flatten();
@@ -86,14 +104,15 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
                 Action::Click(click) => &event.on(k, click.at(Vector3::x())),
                 _ => event,
             };
-            let mut load = lasting(scene, &times.sets[set].on);
+            let mut load = under(&times.sets[set].on);
             if let Some(effect) = event.effect(0, &inertial, q_bp.inverse()) {
                 load.push(effect);
             }
-            if let Some(refusal) = refuses(load) {
+            if let Some(refusal) = refuses(&load) {
                 let noun = scene.events[index].action.noun();
                 found.push(Unpaired {
                     why: reason(body, noun, &refusal.0),
+                    body: k,
                     event: Some(index),
                 });
             }
@@ -102,9 +121,14 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
     found
 }
 
-/// Whether effects that act on every body act on both alike.
-fn are_alike(a: &Body, b: &Body) -> bool {
-    a.properties == b.properties && a.pivot_b == b.pivot_b
+/// Whether the same effects act on both bodies, and alike, and the same method steps them.
+fn are_alike(scene: &Scene, a: usize, b: usize) -> bool {
+    let (one, other) = (&scene.bodies[a], &scene.bodies[b]);
+    let mut effects = scene.effects.iter();
+    one.properties == other.properties
+        && one.pivot_b == other.pivot_b
+        && one.method == other.method
+        && effects.all(|effect| effect.concerns(a) == effect.concerns(b))
 }
 
 fn reason(body: &Body, noun: &str, why: &str) -> String {
@@ -196,18 +220,4 @@ fn lasting_events(scene: &Scene, times: &Times) -> Lasting {
         }
     }
     found
-}
-
-/// What acts on every body besides events, of the effects that are on.
-pub(crate) fn lasting(scene: &Scene, on: &[bool]) -> Load {
-    let mut load = Load::default();
-    for ((_, effect), _) in scene.effects.iter().zip(on).filter(|(_, on)| **on) {
-        match effect {
-            Called::Load(effect) => load.push(Arc::clone(effect)),
-            Called::Decay(decay) => load.set_decay(*decay),
-            Called::Gyroscopic => load.set_gyroscopic(),
-            Called::Off => {}
-        }
-    }
-    load
 }

@@ -1,10 +1,10 @@
 //! The file as a whole: its keys, its opening comment, its cross references.
 
+use super::effect::Written;
 use super::files::{Enclosure, Files, Library};
 use super::problem::Problems;
 use super::table::{Node, Table, nearest};
 use super::{Record, Scene, StateRate, Stepping, body, event, pairing};
-use crate::effect::{Argument, Called, EFFECTS, EffectKind, Value};
 use crate::integrator::{self, DEFAULT_METHOD, Kind, METHODS, Method};
 use crate::trace::{STREAMS, StreamSet};
 use toml::de::DeTable;
@@ -12,7 +12,7 @@ use toml::de::DeTable;
 /// Seconds. A thousandth is what game engines and controllers use.
 const DEFAULT_STEP: f64 = 1e-3;
 /// Of methods that choose their own steps: as accurate as there is need for.
-const DEFAULT_TOLERANCE: f64 = 1e-12;
+pub(super) const DEFAULT_TOLERANCE: f64 = 1e-12;
 /// Half an ulp is 1.1e-16.
 const TIGHTEST_TOLERANCE: f64 = 1e-16;
 /// Samples a second of the derived streams: what a screen shows.
@@ -81,15 +81,21 @@ fn read(
     let (record, rate_chosen) = record(top, problems);
     let clock = record.as_ref().map_or(DEFAULT_RATE, Record::fastest);
     let (stepping, step) = stepping(top, duration, clock, problems);
-    let effects = effects(top, step.unwrap_or(DEFAULT_STEP), problems);
-    if let Some(Stepping::Accuracy(_)) = stepping {
-        no_factor_per_step(top, &effects, problems);
-    }
-    let gyroscopic = effects.iter().any(|(name, _)| *name == "gyroscopic");
+    let effects = Written::read(top, step.unwrap_or(DEFAULT_STEP), problems);
     let tables = top.tables("body", problems);
     let swarms = top.tables("swarm", problems);
-    let context = body::Context { gyroscopic, files };
+    if let Some(Stepping::Accuracy(_)) = stepping {
+        effects.nothing_per_step(problems);
+        no_methods(&tables, problems);
+        no_methods(&swarms, problems);
+    }
+    let gyroscopic = |name: &str| effects.is_gyroscopic(name);
+    let context = body::Context {
+        gyroscopic: &gyroscopic,
+        files,
+    };
     let bodies = body::read_all(&tables, &swarms, context, problems);
+    let effects = effects.on(&bodies, problems);
     if bodies.declared() == 0 && !top.has("body") && !top.has("swarm") {
         problems.add(top.span(), "the scene has no body; add a [[body]]");
     }
@@ -106,7 +112,7 @@ fn read(
     }
     let context = event::Context {
         bodies: &bodies,
-        effects: &effects,
+        effects: effects.as_deref(),
         clock: event::Clock { duration, step },
     };
     let events = event::read_all(&events, &context, problems);
@@ -120,7 +126,7 @@ fn read(
         stepping: stepping?,
         step: step?,
         record: record?,
-        effects,
+        effects: effects?,
         bodies: bodies.into_valid()?,
         events,
     };
@@ -183,18 +189,7 @@ fn stepping(
     }
     let method = match table.get("method") {
         None => integrator::find(DEFAULT_METHOD),
-        Some(node) => node.str(problems).and_then(|name| {
-            let found = integrator::find(name);
-            if found.is_none() {
-                let names = METHODS.iter().flat_map(|m| {
-                    let info = m.info();
-                    std::iter::once(info.name).chain(info.other_names())
-                });
-                let remedy = nearest(name, &names.collect::<Vec<_>>());
-                node.problem(format!("is no method; {remedy}"), problems);
-            }
-            found
-        }),
+        Some(node) => method(&node, problems),
     };
     let step = match table.get("step") {
         None => Some(default_step),
@@ -208,6 +203,28 @@ fn stepping(
     let stepping = method.zip(tolerance);
     let stepping = stepping.map(|(method, tolerance)| Stepping::Method { method, tolerance });
     (stepping, step)
+}
+
+pub(super) fn method(node: &Node<'_>, problems: &mut Problems) -> Option<&'static dyn Method> {
+    let name = node.str(problems)?;
+    let found = integrator::find(name);
+    if found.is_none() {
+        let names = METHODS.iter().flat_map(|m| {
+            let info = m.info();
+            std::iter::once(info.name).chain(info.other_names())
+        });
+        let remedy = nearest(name, &names.collect::<Vec<_>>());
+        node.problem(format!("is no method; {remedy}"), problems);
+    }
+    found
+}
+
+/// Bodies have no methods of their own where the program chooses.
+fn no_methods(bodies: &[Table<'_>], problems: &mut Problems) {
+    for node in bodies.iter().filter_map(|table| table.get("method")) {
+        let why = "beside [stepping] accuracy: with an accuracy the program chooses for every body; keep one of the two";
+        node.problem(why, problems);
+    }
 }
 
 fn step(node: &Node<'_>, duration: Option<f64>, problems: &mut Problems) -> Option<f64> {
@@ -240,7 +257,7 @@ fn accuracy(node: &Node<'_>, problems: &mut Problems) -> Option<f64> {
     Some(accuracy)
 }
 
-fn tolerance(
+pub(super) fn tolerance(
     node: &Node<'_>,
     method: Option<&'static dyn Method>,
     problems: &mut Problems,
@@ -333,67 +350,6 @@ fn streams(node: &Node<'_>, problems: &mut Problems) -> Option<StreamSet> {
         }
     }
     Some(chosen)
-}
-
-fn effects(top: &Table<'_>, step: f64, problems: &mut Problems) -> Vec<(&'static str, Called)> {
-    let mut called = Vec::new();
-    let Some(table) = top.table("effects", problems) else {
-        return called;
-    };
-    for kind in EFFECTS {
-        match effect(kind, &table, step, problems) {
-            None | Some(Called::Off) => {}
-            Some(effect) => called.push((kind.name, effect)),
-        }
-    }
-    table.check_keys(problems);
-    called
-}
-
-/// A factor per step says nothing where the program chooses the step.
-fn no_factor_per_step(
-    top: &Table<'_>,
-    effects: &[(&'static str, Called)],
-    problems: &mut Problems,
-) {
-    for (name, effect) in effects {
-        if let Called::Decay(decay) = effect
-            && decay.is_per_step()
-        {
-            let table = top.table("effects", problems);
-            let why = "is by a factor per step, and with `accuracy` there is no step it could be meant for; write a rate (1/s)";
-            if let Some(node) = table.and_then(|table| table.get(name)) {
-                node.problem(why, problems);
-            }
-        }
-    }
-}
-
-fn effect(
-    kind: &EffectKind,
-    table: &Table<'_>,
-    step: f64,
-    problems: &mut Problems,
-) -> Option<Called> {
-    let node = table.get(kind.name)?;
-    let span = node.span.clone();
-    let text = node.text(problems);
-    let value = match kind.argument {
-        Argument::Switch => Value::Switch(node.boolean(problems)?),
-        Argument::Vector(unit) => Value::Vector(node.vector(unit, problems)?),
-        Argument::Table(keys) => {
-            let table = node.table(format!("{} = {{…}}", kind.name), problems)?;
-            let values = keys
-                .iter()
-                .map(|&(key, unit)| table.get(key).and_then(|node| node.number(unit, problems)))
-                .collect();
-            table.check_keys(problems);
-            Value::Table(values)
-        }
-    };
-    (kind.make)(&value, step)
-        .map_err(|why| problems.add(&span, format!("{text}: {why}")))
-        .ok()
 }
 
 /// The comment lines that open a file, without their marks.

@@ -105,9 +105,11 @@ impl<'d> Table<'d> {
         tables
     }
 
-    /// Names every key that nobody asked for, with the nearest one that is known. Call it last.
-    pub fn check_keys(&self, problems: &mut Problems) {
+    /// Names every key that nobody asked for, with the nearest one that is known; whether there is one.
+    /// Call it last.
+    pub fn check_keys(&self, problems: &mut Problems) -> bool {
         let known = self.known.borrow();
+        let mut unknown = false;
         for (key, _) in self.entries.iter() {
             let name = key.get_ref().as_ref();
             if !known.contains(&name) {
@@ -118,8 +120,10 @@ impl<'d> Table<'d> {
                     self.name
                 );
                 problems.add(&key.span(), message);
+                unknown = true;
             }
         }
+        unknown
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::body::StateBlock;
 use crate::integrator::{Interval, Method, Pieces, Stepper};
-use crate::scene::{Scene, Stepping};
+use crate::scene::{Body, Scene, Stepping};
 use std::ops::Range;
 
 /// A way through an interval.
@@ -47,26 +47,58 @@ pub trait Choose {
     fn choose(&mut self, setting: &Setting<'_>) -> Choice;
 }
 
-/// The method that a scene states, throughout.
-#[derive(Clone, Copy)]
-pub struct Stated(pub Choice);
+/// The methods that a scene states, throughout.
+#[derive(Clone)]
+pub struct Stated {
+    usual: Choice,
+    /// By body: those of bodies that have their own.
+    own: Vec<Option<Choice>>,
+}
 
 impl Stated {
+    /// One for all.
+    pub fn by(usual: Choice) -> Self {
+        Self {
+            usual,
+            own: Vec::new(),
+        }
+    }
+
+    /// `usual` for all bodies of a scene that have none of their own.
+    pub fn where_none_is_own(scene: &Scene, usual: Choice) -> Self {
+        let own = |body: &Body| {
+            body.method.map(|own| Choice {
+                method: own.method,
+                pieces: 1,
+                tolerance: own.tolerance,
+            })
+        };
+        Self {
+            usual,
+            own: scene.bodies.iter().map(own).collect(),
+        }
+    }
+
     /// `None` where the scene states an accuracy instead.
     pub fn of(scene: &Scene) -> Option<Self> {
         match scene.stepping {
-            Stepping::Method { method, tolerance } => Some(Self(Choice {
-                method,
-                pieces: 1,
-                tolerance,
-            })),
+            Stepping::Method { method, tolerance } => {
+                let usual = Choice {
+                    method,
+                    pieces: 1,
+                    tolerance,
+                };
+                Some(Self::where_none_is_own(scene, usual))
+            }
             Stepping::Accuracy(_) => None,
         }
     }
 }
 
 impl Choose for Stated {
-    fn choose(&mut self, _: &Setting<'_>) -> Choice {
-        self.0
+    /// Bodies that go together have one method.
+    fn choose(&mut self, setting: &Setting<'_>) -> Choice {
+        let own = self.own.get(setting.members.start).copied().flatten();
+        own.unwrap_or(self.usual)
     }
 }

@@ -5,7 +5,7 @@ use super::choose::{Choose, Setting};
 use super::script::{Acting, Own};
 use super::sources::Parts;
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
-use crate::effect::{Frame, Load, Pulse, Push, Term, WrenchBlock};
+use crate::effect::{Frame, Load, Member, Pulse, Push, Term, WrenchBlock};
 use crate::integrator::{Interval, Kind, Method, Refusal, Step, Stepper, Work};
 use crate::mass::tensor;
 use crate::scene::{Body, Change, Event, Framed, Scene, lasting};
@@ -82,15 +82,20 @@ pub fn subject(body: &Body) -> Subject {
     }
 }
 
-/// The bodies of a scene in groups of `width` (at most eight), as the scene starts them.
-pub fn groups(bodies: &[Body], width: usize) -> Vec<Group> {
-    let starts = (0..bodies.len()).step_by(width);
-    starts
-        .map(|start| {
-            let members = start..(start + width).min(bodies.len());
-            Group::new(members.clone(), &bodies[members])
-        })
-        .collect()
+/// The bodies of a scene in groups of neighbours, at most `width` (up to eight) that go by one model and
+/// method, as the scene starts them.
+pub fn groups(scene: &Scene, width: usize) -> Vec<Group> {
+    let mut groups = Vec::new();
+    let mut start = 0;
+    for next in 1..=scene.bodies.len() {
+        let full = next - start >= width;
+        let end = next == scene.bodies.len();
+        if end || full || !scene.go_together(start, next) {
+            groups.push(Group::new(start..next, &scene.bodies[start..next]));
+            start = next;
+        }
+    }
+    groups
 }
 
 impl Group {
@@ -157,11 +162,11 @@ impl Group {
         }
     }
 
-    /// The forces on a body, where its model keeps their energy: Euler's equations without damping,
-    /// and nothing but forces that are constant in the world at points of the body.
+    /// The forces on a body, where its model keeps their energy: Euler's equations without damping
+    /// or a speed limit, and nothing but forces that are constant in the world at points of the body.
     pub fn weights(&self, body: usize) -> Option<Vec<Weight>> {
         let lane = body - self.members.start;
-        if self.load.decay().is_some() || !self.load.gyroscopic() {
+        if self.load.decay().is_some() || self.load.limit().is_some() || !self.load.gyroscopic() {
             return None;
         }
         let terms = self.load.terms_of(lane, &self.inertial)?;
@@ -259,7 +264,15 @@ impl Group {
 
     /// The effects of the scene that are on, and the active events that concern this group.
     pub fn load(&mut self, scene: &Scene, acting: &Acting) {
-        self.load = lasting(scene, &acting.on);
+        let bodies = scene.bodies[self.members.clone()].iter().enumerate();
+        let members = bodies.map(|(lane, body)| Member {
+            lane,
+            inertial: self.inertial.get(lane),
+            q_pb: self.q_pb[lane],
+            body,
+        });
+        let members: Vec<Member<'_>> = members.collect();
+        self.load = lasting(scene, self.members.start, &members, &acting.on);
         self.pushes.clear();
         for acting in &acting.events {
             if !self.members.contains(&acting.body) {

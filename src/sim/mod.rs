@@ -32,8 +32,8 @@ pub struct Simulation<'s> {
     scene: &'s Scene,
     subjects: Vec<Subject>,
     groups: Vec<Group>,
-    /// Bodies in a group.
-    width: usize,
+    /// By body: the group it is in.
+    home: Vec<usize>,
     acting: Acting,
     /// The scene's notes by their times (s), and how many have been written.
     notes: Vec<(f64, Note)>,
@@ -109,7 +109,7 @@ pub enum SimError {
 }
 
 impl<'s> Simulation<'s> {
-    /// Eight bodies go together by one method. Where a scene states an accuracy each goes alone, so
+    /// Eight bodies that have one model and method go together. Where a scene states an accuracy each goes alone, so
     /// that each has the method it needs.
     pub fn new(scene: &'s Scene) -> Self {
         let width = match scene.stepping {
@@ -125,11 +125,15 @@ impl<'s> Simulation<'s> {
     }
 
     fn in_groups(scene: &'s Scene, width: usize) -> Self {
+        let groups = group::groups(scene, width);
+        let homes = groups.iter().enumerate();
         let mut simulation = Self {
             scene,
             subjects: scene.bodies.iter().map(group::subject).collect(),
-            groups: group::groups(&scene.bodies, width),
-            width,
+            home: homes
+                .flat_map(|(k, group)| group.members.clone().map(move |_| k))
+                .collect(),
+            groups,
             acting: Acting::at_start(scene),
             notes: script::notes(scene),
             noted: 0,
@@ -309,7 +313,7 @@ impl<'s> Simulation<'s> {
     /// Starts the method of the groups of these bodies, and what is known of their true motion:
     /// from now until an event touches them.
     fn set_out(&mut self, bodies: &[usize], schedule: &Schedule<'_>, chooser: &mut dyn Choose) {
-        let mut groups: Vec<usize> = bodies.iter().map(|body| body / self.width).collect();
+        let mut groups: Vec<usize> = bodies.iter().map(|&body| self.home[body]).collect();
         groups.dedup();
         let now = schedule.now().time;
         for group in groups {
@@ -559,7 +563,7 @@ impl<'s> Simulation<'s> {
             }));
         }
         let mut groups = self.touched(&all);
-        groups.iter_mut().for_each(|body| *body /= self.width);
+        groups.iter_mut().for_each(|body| *body = self.home[*body]);
         groups.dedup();
         for group in groups {
             self.groups[group].load(self.scene, &self.acting);
@@ -582,7 +586,7 @@ impl<'s> Simulation<'s> {
             }
             (Target::Body(body), Action::Set(change)) => {
                 let body = *body;
-                let group = &mut self.groups[body / self.width];
+                let group = &mut self.groups[self.home[body]];
                 group.set(body, change);
                 let held = self.scene.bodies[body].pivot_b.is_some();
                 match self.truths.get_mut(body).map(RefCell::get_mut) {
@@ -610,7 +614,7 @@ impl<'s> Simulation<'s> {
 
     /// Strikes a body, or begins to push it.
     fn act(&mut self, index: usize, body: usize, event: Event, at: f64) -> Done {
-        let group = &mut self.groups[body / self.width];
+        let group = &mut self.groups[self.home[body]];
         if let Some(jump) = strike(group, body, &event) {
             if let Some(truth) = self.truths.get_mut(body) {
                 strike_truth(truth.get_mut(), body, &event, at);
@@ -736,7 +740,7 @@ impl<'s> Simulation<'s> {
     }
 
     fn group_of(&self, body: usize) -> &Group {
-        &self.groups[body / self.width]
+        &self.groups[self.home[body]]
     }
 
     fn samples(&self, t: f64) -> Vec<Sample> {
@@ -769,7 +773,7 @@ fn truths(scene: &Scene) -> Vec<RefCell<Truth>> {
     {
         return Vec::new();
     }
-    let alone = group::groups(&scene.bodies, 1);
+    let alone = group::groups(scene, 1);
     alone
         .into_iter()
         .map(|body| RefCell::new(Truth::new(body)))

@@ -248,7 +248,7 @@ pub fn set_note(event: &Event, (body, subject): (usize, &Subject)) -> Note {
 pub fn switch_note(event: &Event, scene: &Scene) -> Note {
     let text = match event.action {
         Action::Switch { effect, on } => {
-            let name = scene.effects.get(effect).map_or("", |(name, _)| name);
+            let name = scene.effects.get(effect).map_or("", |effect| &*effect.name);
             format!(
                 "{}: {name} {}",
                 called(event),

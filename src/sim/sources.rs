@@ -9,30 +9,41 @@
 //! once are one source.
 
 use crate::body::{Inertial, InertialBlock, State, StateBlock};
-use crate::effect::{Called, Load, WrenchBlock};
-use crate::scene::{Action, Event, Scene, Target};
+use crate::effect::{Called, Effect, Load, Member, WrenchBlock};
+use crate::scene::{Action, Event, Scene, SceneEffect, Target};
 use crate::trace::Subject;
 use nalgebra::Vector3;
 
 /// The model's own term, which of a fast body is many times what is applied.
 pub const GYROSCOPIC: &str = "gyroscopic";
-const DAMPING: &str = "damping";
 
 /// Names every source of torque on each body; none where one says all there is to say.
 pub fn tell_apart(scene: &Scene, subjects: &mut [Subject]) {
     for (k, (subject, body)) in subjects.iter_mut().zip(&scene.bodies).enumerate() {
-        let (inertial, _) = Inertial::new(&body.properties, body.pivot_b);
+        let (inertial, q_bp) = Inertial::new(&body.properties, body.pivot_b);
+        let member = Member {
+            lane: 0,
+            inertial,
+            q_pb: q_bp.inverse(),
+            body,
+        };
         let mut block = InertialBlock::default();
         block.set(0, inertial);
         let turns = |called: &Called| match called {
             // The weight of a free body, say, turns nothing.
-            Called::Load(effect) => effect.depends(&block).torque,
+            Called::Load(spec) => spec.on(&[member]).depends(&block).torque,
             Called::Gyroscopic => true,
             Called::Decay(decay) => decay.angular_rate() > 0.0,
-            Called::Off => false,
+            // A limit cuts a velocity; it is no torque.
+            Called::Limit(_) | Called::Off => false,
         };
-        let lasting = scene.effects.iter().filter(|(_, called)| turns(called));
-        let mut names: Vec<String> = lasting.map(|(name, _)| (*name).to_owned()).collect();
+        let own = scene.effects.iter().filter(|effect| effect.concerns(k));
+        let lasting = own.filter(|effect| turns(&effect.called));
+        let name = |effect: &SceneEffect| match effect.called {
+            Called::Gyroscopic => GYROSCOPIC.to_owned(),
+            _ => effect.name.to_string(),
+        };
+        let mut names: Vec<String> = lasting.map(name).collect();
         for event in scene.events.iter().filter(|event| may_reach(event, k)) {
             let name = match event.action {
                 Action::Torque { .. } => "torque",
@@ -59,14 +70,14 @@ fn may_reach(event: &Event, body: usize) -> bool {
 
 /// What each effect applies to a block, by the effect's name.
 #[derive(Default)]
-pub struct Parts(Vec<(&'static str, WrenchBlock)>);
+pub struct Parts(Vec<(String, WrenchBlock)>);
 
 impl Parts {
     pub fn of(load: &Load, t: f64, inertial: &InertialBlock, state: &StateBlock) -> Self {
-        let part = |effect: &dyn crate::effect::Effect| {
+        let part = |(name, effect): (&str, &dyn Effect)| {
             let mut wrench = WrenchBlock::default();
             effect.add(t, inertial, state, &mut wrench);
-            (effect.name(), wrench)
+            (name.to_owned(), wrench)
         };
         Self(load.effects().map(part).collect())
     }
@@ -80,10 +91,14 @@ impl Parts {
         state: &State,
     ) -> Vec<Vector3<f64>> {
         let momentum_w = || inertial.momentum_w(state);
-        let own = |name: &str| match (name, load.decay()) {
-            (GYROSCOPIC, _) if load.gyroscopic() => -state.omega_w.cross(&momentum_w()),
-            (DAMPING, Some(decay)) => -momentum_w() * decay.angular_rate(),
-            _ => Vector3::zeros(),
+        let own = |name: &str| {
+            if name == GYROSCOPIC && load.gyroscopic() {
+                return -state.omega_w.cross(&momentum_w());
+            }
+            let decay = load.decays().find(|(decay, _)| *decay == name);
+            decay.map_or(Vector3::zeros(), |(_, decay)| {
+                -momentum_w() * decay.angular_rate()
+            })
         };
         let applied = |name: &String| -> Vector3<f64> {
             let parts = self.0.iter().filter(|(part, _)| part == name);

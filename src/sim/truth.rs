@@ -105,7 +105,7 @@ impl Truth {
                 body.load(scene, acting);
                 let takes = body.refusal(method).is_none();
                 takes.then(|| {
-                    let mut exactly = Stated(Choice {
+                    let mut exactly = Stated::by(Choice {
                         method,
                         pieces: 1,
                         tolerance: f64::EPSILON,

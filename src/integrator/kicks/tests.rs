@@ -1,7 +1,7 @@
 //! What kicks alone have: the figures of the heavy top, the drift, merged steps, refusals.
 
 use super::*;
-use crate::body::{InertialBlock, LANES};
+use crate::body::{InertialBlock, LANES, LaneSet};
 use crate::effect::{Depends, Effect, Load, Value};
 use crate::exact::FreeMotion;
 use crate::integrator::preprocessed::Preprocessed;
@@ -159,6 +159,10 @@ impl Effect for Drag {
         "drag"
     }
 
+    fn lanes(&self) -> LaneSet {
+        LaneSet::ALL
+    }
+
     fn add(&self, _: f64, inertial: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {
         for lane in 0..LANES {
             let s = state.get(lane);
@@ -200,8 +204,8 @@ fn damping_and_the_tutorials_model_cost_no_order_beside_a_torque() {
         if !gyro {
             effect("gravity", Value::Vector(-Vector3::z()), &mut load);
         }
-        let rates = vec![Some(0.1), Some(0.3), None, None];
-        effect("damping", Value::Table(rates), &mut load);
+        let rates = Value::numbers(&[("linear", 0.1), ("angular", 0.3)]);
+        effect("damping", rates, &mut load);
         let bodies = (inertials, states);
         // Long enough for small steps to be needed.
         let t = 10.0;

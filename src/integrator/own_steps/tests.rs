@@ -1,7 +1,7 @@
 //! What every method with steps of its own must do: error follows the tolerance, instants in a step are
 //! as good as its end, nothing depends on the clock, and what cannot be followed ends.
 
-use crate::body::{Inertial, InertialBlock, State, StateBlock};
+use crate::body::{Inertial, InertialBlock, LaneSet, State, StateBlock};
 use crate::effect::{Couple, Effect, Frame, Load, Push, Value, WrenchBlock};
 use crate::exact::FreeMotion;
 use crate::integrator::tests::{angle, block, damped, effect, gyroscopic, slope, spinning};
@@ -233,7 +233,7 @@ fn nothing_depends_on_how_the_clock_cuts_the_time() {
         if decaying {
             effect(
                 "damping",
-                Value::Table(vec![Some(0.1), Some(0.2), None, None]),
+                Value::numbers(&[("linear", 0.1), ("angular", 0.2)]),
                 &mut load,
             );
         }
@@ -272,6 +272,10 @@ struct Runaway;
 impl Effect for Runaway {
     fn name(&self) -> &'static str {
         "runaway"
+    }
+
+    fn lanes(&self) -> LaneSet {
+        LaneSet::ALL
     }
 
     fn add(&self, _: f64, _: &InertialBlock, state: &StateBlock, wrench: &mut WrenchBlock) {

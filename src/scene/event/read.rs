@@ -4,7 +4,8 @@ use super::super::body::{self, Bodies};
 use super::super::problem::Problems;
 use super::super::table::{Node, Table, nearest};
 use super::{Action, Event, Target, click, note, push, set, switch};
-use crate::effect::{Called, PROFILES, Profile};
+use crate::effect::{PROFILES, Profile};
+use crate::scene::SceneEffect;
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -18,7 +19,8 @@ pub struct Clock {
 /// What events refer to.
 pub struct Context<'a> {
     pub bodies: &'a Bodies,
-    pub effects: &'a [(&'static str, Called)],
+    /// `None` where one of them is wrong: that has been told.
+    pub effects: Option<&'a [SceneEffect]>,
     pub clock: Clock,
 }
 

@@ -6,14 +6,14 @@ use super::read::Reading;
 use super::{Action, Target};
 
 pub(super) fn read(reading: Reading<'_, '_>, problems: &mut Problems) -> Option<(Target, Action)> {
-    let effects = reading.context.effects;
+    let effects = reading.context.effects?;
     let table = reading.node.table("switch = {…}".to_owned(), problems)?;
     let effect = table.require("effect", "the name of an effect of the scene", problems);
     let effect = effect.and_then(|node| {
         let name = node.str(problems)?;
-        let found = effects.iter().position(|(known, _)| *known == name);
+        let found = effects.iter().position(|effect| &*effect.name == name);
         if found.is_none() {
-            let names: Vec<&str> = effects.iter().map(|(name, _)| *name).collect();
+            let names: Vec<&str> = effects.iter().map(|effect| &*effect.name).collect();
             let remedy = match names.is_empty() {
                 true => "the scene has none".to_owned(),
                 false => nearest(name, &names),
