@@ -39,7 +39,7 @@ impl Branch {
         m[min] = Dd::product(i[min], w[min] / scale);
         m[mid] = Dd::product(i[mid], w[mid]);
         m[max] = Dd::product(i[max], w[max] / scale);
-        let squares = m.map(Dd::square);
+        let squares = [m[0].square(), m[1].square(), m[2].square()];
         let by_min = Dd::difference(i[mid], i[min]) * i[max];
         let by_max = Dd::difference(i[max], i[mid]) * i[min];
         let high = by_max * squares[max];
@@ -58,12 +58,13 @@ impl Branch {
         let (first, third) = (sign(order[0]), sign(order[2]));
         let second = if even { first * third } else { -first * third };
         let signs = [first, second, third];
+        let of = |k: usize| m[order[k]].scaled(signs[k]);
         Self {
             order,
             signs,
-            i: order.map(|axis| i[axis]),
-            m: [0, 1, 2].map(|k| m[order[k]].scaled(signs[k])),
-            squares: order.map(|axis| squares[axis]),
+            i: [i[order[0]], i[order[1]], i[order[2]]],
+            m: [of(0), of(1), of(2)],
+            squares: [squares[order[0]], squares[order[1]], squares[order[2]]],
             scale,
             sigma,
             a,
@@ -71,6 +72,13 @@ impl Branch {
             c: Dd::difference(i[max], i[min]) * i[mid],
             gap: gap.abs(),
         }
+    }
+}
+
+impl Branch {
+    /// a, b and c, rounded.
+    pub fn arms(&self) -> [f64; 3] {
+        [self.a.hi, self.b.hi, self.c.hi]
     }
 }
 

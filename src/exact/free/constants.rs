@@ -5,12 +5,16 @@
 //! ```text
 //! d1 = c s1 + b s2   d3 = a s2 + c s3   λ = √(b d3)/V   k² = a d1/b d3   k'² = c (b s3 - a s1)/b d3
 //! Λ  = M(√(b d3), √(c (b s3 - a s1)))/V = λ π/2K          Λ' = M(√(b d3), √(a d1))/V = λ π/2K'
-//! Ω  = (G I2 I3 - σ (½ G a S + V Λ))/V, and G/I2 on the separatrix
+//! Ω  = (G I2 I3 - σ (½ G a S + V Λ))/V, and G/I2 on the separatrix         (p = √(c d3))
+//!    = (G I1 I2 + σ d1 S/2G)/V                                             (p = √(b c) G)
 //! t0 = σ m2 R_F(c d3 s1, c d1 s3, d1 d3) V                 u = λ (t + t0)
 //! κ  = e^{-2ΛT_w}   T_w = R_F(b d1, c d1, b c G²) V        ε = e^{-2ΛT_a}   T_a = R_F(a d3, c d3, a c G²) V
 //! ```
 //!
-//! The R_F are of the kinds that [`Mean`] takes down to an arsinh or arctan: √κ and √ε need neither.
+//! S is [`Mean::with_sum`]'s, a complete integral of the third kind of characteristic n = -A/B or
+//! k²/n (DLMF 19.8.6), whose sum is known (DLMF 19.7.8 at π/2): hence two forms of Ω. b c G² is at most
+//! (c/a) b d3, c d3 is (c/b) b d3, and c = a + b: from the lesser p the sum takes four rounds or five,
+//! for a thin rod too. The R_F are of the kinds that [`Mean`] takes down to an arsinh or arctan: √κ and √ε need neither.
 
 use super::Time;
 use super::branch::Branch;
@@ -114,8 +118,6 @@ struct Parts<'b> {
     g: Dd,
     /// V λ.
     alpha: Dd,
-    /// √(c d3).
-    p: Dd,
     /// 1/V times the unit of the rates.
     over_v: Dd,
 }
@@ -129,29 +131,36 @@ impl Constants {
         let (s1, s3) = (s1.scaled(scale * scale), s3.scaled(scale * scale));
         let d1 = (c * s1).plus(b * s2);
         let d3 = (a * s2).plus(c * s3);
+        let g2 = s1.plus(s2).plus(s3);
         let alpha2 = b * d3;
         let parts = Parts {
             branch,
             d1,
             d3,
-            g: s1.plus(s2).plus(s3).sqrt(),
+            g: g2.sqrt(),
             alpha: alpha2.sqrt(),
-            p: (c * d3).sqrt(),
             over_v: (Dd::ONE / (Dd::product(i1, i2) * i3)).scaled(unit),
         };
-        let near = a.hi * d1.hi > COMPLEMENTARY * alpha2.hi;
         let gamma = (c * branch.gap).sqrt().scaled(scale);
         if gamma.hi == 0.0 {
             return parts.separatrix();
         }
-        let (mean, s) = Mean::with_sum(parts.alpha, gamma, a.hi * d1.hi, parts.p);
-        let lambda = mean.limit;
-        let slow = (parts.g * a * s).scaled(0.5).plus(lambda);
-        let turns = Dd::product(i2, i3) * parts.g - slow * branch.sigma;
+        let g = parts.g;
+        let product = a.hi * d1.hi;
+        let bg2 = b * g2;
+        let short = bg2.hi < d3.hi;
+        let p = (c * if short { bg2 } else { d3 }).sqrt();
+        let (mean, sum) = Mean::with_sum(parts.alpha, gamma, product, p);
+        let turning = if short {
+            Dd::product(i1, i2) * g + (d1 * sum / g).scaled(0.5 * branch.sigma)
+        } else {
+            let less = (g * a * sum).scaled(0.5).plus(mean.limit);
+            Dd::product(i2, i3) * g - less * branch.sigma
+        };
         Self {
-            turns: turns * parts.over_v * OVER_FOUR_PI,
-            form: if near {
-                parts.complementary(lambda, gamma.hi)
+            turns: turning * parts.over_v * OVER_FOUR_PI,
+            form: if product > COMPLEMENTARY * alpha2.hi {
+                parts.complementary(mean.limit, gamma.hi)
             } else {
                 parts.nome(&mean)
             },
@@ -161,9 +170,9 @@ impl Constants {
 
 impl Parts<'_> {
     fn nome(&self, mean: &Mean) -> Form {
-        let Self { branch, g, .. } = self;
-        let &Branch { a, b, c, m, .. } = *branch;
-        let [a, b, c, d1, d3, g] = [a, b, c, self.d1, self.d3, *g].map(|x| x.hi);
+        let &Branch { m, .. } = self.branch;
+        let [a, b, c] = self.branch.arms();
+        let (d1, d3, g) = (self.d1.hi, self.d3.hi, self.g.hi);
         let lambda = mean.limit.hi;
         // e^{-arsinh Λ/x}
         let root = |x: f64| x / ((x * x + lambda * lambda).sqrt() + lambda);
@@ -172,7 +181,12 @@ impl Parts<'_> {
         // The R_F of t0 but for d1 in the second and third argument, which may be 0.
         let m2 = m[1].hi;
         let size = if d1 > 0.0 { m2.abs() / d1.sqrt() } else { 0.0 };
-        let x = mean.falling(self.p.hi * m[0].hi, c.sqrt() * m[2].hi, d3.sqrt(), size);
+        let x = mean.falling(
+            (c * d3).sqrt() * m[0].hi,
+            c.sqrt() * m[2].hi,
+            d3.sqrt(),
+            size,
+        );
         Form::Nome(ByNome {
             rate: self.rate(mean.limit),
             offset: Dd::new(libm::atan2(m2 * lambda, x) * OVER_TWO_PI.hi),
@@ -213,11 +227,12 @@ impl Parts<'_> {
 
     /// 2A0 = Λ'T_a in [0, π/2], and before it its cosine and sine.
     fn lean(&self, dual: &Mean) -> ((f64, f64), f64) {
-        let (a, c) = (self.branch.a.hi, self.branch.c.hi);
+        let [a, _, c] = self.branch.arms();
+        let d3 = self.d3.hi;
         let x = dual.falling(
-            (a * self.d3.hi).sqrt(),
+            (a * d3).sqrt(),
             (a * c).sqrt() * self.g.hi,
-            self.p.hi,
+            (c * d3).sqrt(),
             1.0,
         );
         let limit = dual.limit.hi;
@@ -227,11 +242,12 @@ impl Parts<'_> {
 
     /// `y = σΛ't0/2 = ±½ arsinh(|m2| Λ'/x)` at the start, to an absolute 1e-16: it may be hundreds.
     fn start(&self, dual: &Mean) -> Dd {
-        let &Branch { m, scale, c, .. } = self.branch;
+        let &Branch { m, scale, .. } = self.branch;
+        let [_, _, c] = self.branch.arms();
         let (m2, by_scale) = (m[1].hi.abs(), m[1].hi.abs() / scale);
         let x = dual.rising(
-            self.p.hi * m[0].hi,
-            (c.hi * self.d1.hi).sqrt() * m[2].hi,
+            (c * self.d3.hi).sqrt() * m[0].hi,
+            (c * self.d1.hi).sqrt() * m[2].hi,
             by_scale,
         );
         let reach = m2 * dual.limit.hi;

@@ -64,14 +64,13 @@ impl Mean {
     /// e = (p² - αγ)/(p² + αγ)   Q ← Q e/2   S ← S + Q   p ← (p + αγ/p)/2
     /// ```
     ///
-    /// from S = Q = 1 on, for p ≥ α; right sides are the old values.
+    /// from S = Q = 1 on, for p ≥ α; right sides are the old values. e comes down quadratically once
+    /// p² is of the size of αγ, and to that by halves.
     #[inline]
     pub fn with_sum(mut alpha: Dd, mut gamma: Dd, square: f64, mut p: Dd) -> (Self, Dd) {
         let (mut mean, mut square, mut half_gap) = (Self::starting(), square, Dd::ZERO);
         let (mut q, mut s) = (Dd::ONE, Dd::ONE);
-        // e comes down quadratically once p is of the size of α, and to that by halves, in
-        // log2 √(C/B) rounds: 25 for a rod of a ten-millionth of its length.
-        for _ in 0..512 {
+        for _ in 0..MOST {
             let product = alpha * gamma;
             let other = product / p;
             let sum = p.plus(other);

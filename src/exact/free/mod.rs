@@ -41,10 +41,6 @@ pub struct FreeMotion {
 }
 
 #[derive(Clone, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "most motions are of the large kind"
-)]
 enum Kind {
     Steady(Steady),
     Theta(Theta),
@@ -254,8 +250,11 @@ fn power_of_two(x: f64) -> f64 {
 impl Steady {
     /// ω in a unit of rates.
     fn new(q0: Quaternion<f64>, omega: Vector3<f64>, unit: f64) -> Self {
-        let [x, y, z] = [0, 1, 2].map(|k| Dd::new(omega[k]).square());
-        let rate = x.plus(y).plus(z).sqrt();
+        let square = |x: f64| Dd::product(x, x);
+        let rate = square(omega.x)
+            .plus(square(omega.y))
+            .plus(square(omega.z))
+            .sqrt();
         Self {
             q0,
             axis: if rate.hi == 0.0 {
@@ -274,13 +273,13 @@ impl Theta {
     fn new(i: Vector3<f64>, q0: Quaternion<f64>, w: Vector3<f64>, unit: f64) -> Self {
         let branch = Branch::choose(i, w);
         let Constants { turns, form } = Constants::new(&branch, unit);
-        let [w, x, y, z] = [0, 1, 2, 3].map(|k| {
-            let mut unit = [0.0; 4];
-            unit[k] = 1.0;
-            Quaternion::new(unit[0], unit[1], unit[2], unit[3])
-        });
         let mut theta = Self {
-            columns: [w, x, y, z],
+            columns: [
+                Quaternion::new(1.0, 0.0, 0.0, 0.0),
+                Quaternion::new(0.0, 1.0, 0.0, 0.0),
+                Quaternion::new(0.0, 0.0, 1.0, 0.0),
+                Quaternion::new(0.0, 0.0, 0.0, 1.0),
+            ],
             turns,
             form,
         };
