@@ -8,7 +8,7 @@
 //! any time, for any body:
 //!
 //! - the two rates (of the phase in the series, of the precession) are double-double, from one
-//!   AGM loop, and the phases are reduced in double-double: no loss over 1e9 s;
+//!   AGM loop, and the phases are reduced to turns in double-double: no loss over 1e9 s;
 //! - every quantity is a sum of positive terms, moments entering by their differences: nothing
 //!   cancels for thin or nearly symmetric bodies;
 //! - which side of the separatrix a motion is on, and how near, is decided exactly.
