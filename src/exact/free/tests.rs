@@ -214,7 +214,7 @@ fn two_forms_agree_over_a_wide_sweep() {
     }
 }
 
-/// What is asked of generic bodies, held in the hard cases too; measured: 2.4e-15 rad over all
+/// What is asked of generic bodies, held in the hard cases too; measured: 2.1e-15 rad over all
 /// nine thousand. The second form's last angles alone may take 2e-15: half-angles of up to 3π/2 and
 /// their sines round by 1e-16 to 4e-16, at t and at 0, products of quaternions by 2e-16, and an
 /// angle is twice what its quaternion is off.
