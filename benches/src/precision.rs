@@ -87,7 +87,9 @@ fn free_body(report: &mut Report, repeats: usize) {
     let problem = free();
     let (body, s) = (problem.interval.inertial.get(0), problem.state.get(0));
     let motion = || FreeMotion::new(black_box(body.moments), s.q_wp, s.omega_w);
-    let mut times = race(
+    let at = |k: usize| T * (k + 1) as f64 / INSTANTS as f64;
+    let times: Vec<f64> = (0..INSTANTS).map(at).collect();
+    let mut took = race(
         &mut [
             contestant(
                 || (),
@@ -98,9 +100,7 @@ fn free_body(report: &mut Report, repeats: usize) {
                 |instants: &mut Vec<Quaternion<f64>>| {
                     for _ in 0..RUNS {
                         let motion = motion();
-                        for (k, q) in instants.iter_mut().enumerate() {
-                            *q = motion.attitude(T * (k + 1) as f64 / INSTANTS as f64);
-                        }
+                        motion.attitudes(&times, instants);
                         black_box(&instants);
                     }
                 },
@@ -111,7 +111,7 @@ fn free_body(report: &mut Report, repeats: usize) {
     .into_iter();
     let error = format!("error {:.1e}", problem.error(motion().attitude(T)));
     for name in ["free, formula, end", "free, formula, 1000 instants"] {
-        if let Some(time) = times.next() {
+        if let Some(time) = took.next() {
             report.time(name, microseconds(time.per(RUNS)), "us", error.clone());
         }
     }

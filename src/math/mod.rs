@@ -11,6 +11,7 @@ pub mod expansion;
 mod oracle;
 mod quaternion;
 mod real;
+mod turns;
 
 pub use agm::agm;
 pub use dd::Dd;
@@ -20,3 +21,4 @@ pub use quaternion::{
     angle_between, axis_angle, exponential, exponential_by_series, is_short, spin_rate, turned,
 };
 pub use real::Real;
+pub use turns::{Phase, exp_falling, sin_cos_turns};

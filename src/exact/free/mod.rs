@@ -8,7 +8,7 @@
 //! any time, for any body:
 //!
 //! - the two rates (of the phase in the series, of the precession) are double-double, from one
-//!   AGM loop, and the phases are reduced in double-double: no loss over 1e9 s;
+//!   AGM loop, and the phases are reduced to turns in double-double: no loss over 1e9 s;
 //! - every quantity is a sum of positive terms, moments entering by their differences: nothing
 //!   cancels for thin or nearly symmetric bodies;
 //! - which side of the separatrix a motion is on, and how near, is decided exactly.
@@ -19,17 +19,17 @@
 
 mod branch;
 mod constants;
+mod means;
 mod series;
 #[cfg(test)]
 mod tests;
 
-use crate::math::Dd;
-use crate::math::dd::nearest;
+use crate::math::{Dd, Phase, sin_cos_turns};
 use branch::Branch;
-use constants::Constants;
+use constants::{Constants, Form, Pair};
+use multiversion::multiversion;
 use nalgebra::{Quaternion, Vector3};
-use series::{Series, times};
-use std::f64::consts::PI;
+use series::{Complex, times};
 
 /// A torque-free motion, set up once and evaluated at any time.
 #[derive(Clone, Debug)]
@@ -42,28 +42,27 @@ pub struct FreeMotion {
 
 #[derive(Clone, Debug)]
 enum Kind {
-    /// `q = q0 exp(ω t/2)`, ω in principal axes, `|ω|/4π` in double-double.
-    Steady {
-        q0: Quaternion<f64>,
-        axis: Vector3<f64>,
-        turns: Dd,
-        omega: Vector3<f64>,
-    },
-    Theta(Box<Theta>),
+    Steady(Steady),
+    Theta(Theta),
+}
+
+/// `q = q0 exp(ω t/2)`, ω in principal axes, `|ω|/4π` in double-double.
+#[derive(Clone, Debug)]
+struct Steady {
+    q0: Quaternion<f64>,
+    axis: Vector3<f64>,
+    turns: Dd,
+    omega: Vector3<f64>,
 }
 
 /// The theta form in axes 1, 2, 3: 3 the one the momentum circles, 2 the middle one.
 #[derive(Clone, Debug)]
 struct Theta {
-    /// Left and right constants: `q(t) = left · q_b(t) · right`.
-    left: Quaternion<f64>,
-    right: Quaternion<f64>,
-    /// σΛ/π and Ω/4π, 1/s; σ = ±1 is the branch.
-    lambda_turns: Dd,
-    omega_turns: Dd,
-    /// σΛ t0 / π.
-    offset: Dd,
-    series: Series,
+    /// What q(t) is made of by w, x, y, z of `q_b(t)`, the attitude about L.
+    columns: [Quaternion<f64>; 4],
+    /// Ω/4π, 1/s; σ = ±1 is the branch.
+    turns: Dd,
+    form: Form,
 }
 
 impl FreeMotion {
@@ -88,22 +87,36 @@ impl FreeMotion {
         self.after(t)
     }
 
+    /// The attitudes at so many instants: the bits that [`attitude`](Self::attitude) has, several
+    /// times as fast.
+    ///
+    /// `attitudes` is as long as `times`.
+    pub fn attitudes(&self, times: &[f64], attitudes: &mut [Quaternion<f64>]) {
+        match &self.kind {
+            Kind::Steady(steady) => fill(steady, times, attitudes),
+            Kind::Theta(theta) => match &theta.form {
+                Form::Nome(form) => fill(&(theta, form), times, attitudes),
+                Form::Complementary(form) => fill(&(theta, form), times, attitudes),
+                Form::Separatrix(form) => fill(&(theta, form), times, attitudes),
+            },
+        }
+    }
+
     pub(super) fn attitude_after(&self, t: impl Time) -> Quaternion<f64> {
         match &self.kind {
-            Kind::Steady {
-                q0, axis, turns, ..
-            } => {
-                let (cos, sin) = whole_turns_off(t.times(*turns));
-                q0 * Quaternion::from_parts(cos, axis * sin)
-            }
-            Kind::Theta(theta) => theta.left * theta.at(t) * theta.right,
+            Kind::Steady(steady) => steady.at(t),
+            Kind::Theta(theta) => match &theta.form {
+                Form::Nome(form) => (theta, form).at(t),
+                Form::Complementary(form) => (theta, form).at(t),
+                Form::Separatrix(form) => (theta, form).at(t),
+            },
         }
     }
 
     pub(super) fn after(&self, t: impl Time) -> (Quaternion<f64>, Vector3<f64>) {
         let q = self.attitude_after(t);
         let omega = match &self.kind {
-            Kind::Steady { omega, .. } => *omega,
+            Kind::Steady(steady) => steady.omega,
             Kind::Theta(_) => turn(q.conjugate(), self.momentum_w).component_div(&self.moments),
         };
         (q, omega)
@@ -112,40 +125,89 @@ impl FreeMotion {
 
 /// A time in as many digits as it has.
 pub(super) trait Time: Copy {
-    fn times(self, rate: Dd) -> Dd;
-    fn rough(self) -> f64;
+    /// `t rate`, a phase in turns.
+    fn gone(self, rate: Dd) -> Phase;
 }
 
 impl Time for f64 {
-    fn times(self, rate: Dd) -> Dd {
-        rate * self
-    }
-    fn rough(self) -> f64 {
-        self
+    #[inline(always)]
+    fn gone(self, rate: Dd) -> Phase {
+        Phase::gone(self, rate)
     }
 }
 
 impl Time for Dd {
-    fn times(self, rate: Dd) -> Dd {
-        rate * self
+    #[inline(always)]
+    fn gone(self, rate: Dd) -> Phase {
+        let phase = Phase::gone(self.hi, rate);
+        Phase {
+            rest: phase.rest + self.lo * rate.hi,
+            ..phase
+        }
     }
-    fn rough(self) -> f64 {
-        self.to_f64()
+}
+
+/// What has an attitude at any time, by one line of arithmetic without a branch: for lanes.
+trait Motion {
+    fn at(&self, t: impl Time) -> Quaternion<f64>;
+}
+
+/// Instants that go through the arithmetic side by side.
+const LANES: usize = 8;
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn fill<M: Motion>(motion: &M, times: &[f64], attitudes: &mut [Quaternion<f64>]) {
+    let (blocks, rest) = times.as_chunks::<LANES>();
+    let (filled, last) = attitudes.split_at_mut((blocks.len() * LANES).min(attitudes.len()));
+    for (times, attitudes) in blocks.iter().zip(filled.chunks_mut(LANES)) {
+        let mut block = [[0.0; LANES]; 4];
+        for lane in 0..LANES {
+            let q = motion.at(times[lane]);
+            for (component, of) in block.iter_mut().zip(q.coords.iter()) {
+                component[lane] = *of;
+            }
+        }
+        for (lane, q) in attitudes.iter_mut().enumerate() {
+            let [x, y, z, w] = block.map(|component| component[lane]);
+            *q = Quaternion::new(w, x, y, z);
+        }
+    }
+    for (t, q) in rest.iter().zip(last) {
+        *q = motion.at(*t);
+    }
+}
+
+impl Motion for Steady {
+    #[inline(always)]
+    fn at(&self, t: impl Time) -> Quaternion<f64> {
+        let (sin, cos) = sin_cos_turns(t.gone(self.turns).reduced());
+        self.q0 * Quaternion::from_parts(cos, self.axis * sin)
+    }
+}
+
+impl<F: Pair> Motion for (&Theta, &F) {
+    /// `q_b(t)`, unit: `e^{iΩt/2} (α, β)` as (w + iz, x + iy).
+    #[inline(always)]
+    fn at(&self, t: impl Time) -> Quaternion<f64> {
+        let (theta, form) = self;
+        let turns = t.gone(theta.turns).reduced();
+        let (alpha, beta, more) = form.pair(t);
+        let square = |(re, im): Complex| re * re + im * im;
+        let norm = 1.0 / (square(alpha) + square(beta)).sqrt();
+        let (sin, cos) = sin_cos_turns(turns + more);
+        let turn = (cos * norm, sin * norm);
+        let ((w, z), (x, y)) = (times(alpha, turn), times(beta, turn));
+        let [of_w, of_x, of_y, of_z] = theta.columns;
+        of_w * w + of_x * x + of_y * y + of_z * z
     }
 }
 
 /// `R(q) v`.
+#[inline]
 fn turn(q: Quaternion<f64>, v: Vector3<f64>) -> Vector3<f64> {
     let u = q.imag();
     let t = u.cross(&v) * 2.0;
     v + t * q.w + u.cross(&t)
-}
-
-/// Cosine and sine of 2π times a number of turns, reduced in double-double.
-fn whole_turns_off(turns: Dd) -> (f64, f64) {
-    let (part, _) = turns.fraction();
-    let (sin, cos) = libm::sincos(2.0 * PI * part);
-    (cos, sin)
 }
 
 /// Components of ω below this part of the largest have squares that underflow beside it, and are
@@ -154,20 +216,19 @@ const VANISHING: f64 = 1e-140;
 
 fn kind(i: Vector3<f64>, q0: Quaternion<f64>, w: Vector3<f64>) -> Kind {
     // Units of its own: moments and rates near 1, exactly, by powers of two.
-    let scale_w = power_of_two(w.amax());
+    let unit = power_of_two(w.amax());
     let i = i / power_of_two(i.amax());
-    let mut w = w / scale_w;
-    if !is_middle(i, w.iamax()) {
+    let mut w = w / unit;
+    if w.amin() < VANISHING && !is_middle(i, w.iamax()) {
         w = w.map(|x| if x.abs() < VANISHING { 0.0 } else { x });
     }
     // dω/dt = 0: each product (I_j - I_k) ω_j ω_k has a factor that is zero.
     let zero = |j: usize, k: usize| i[j] == i[k] || w[j] == 0.0 || w[k] == 0.0;
-    let kind = if zero(1, 2) && zero(2, 0) && zero(0, 1) {
-        steady_rotation(q0, w)
+    if zero(1, 2) && zero(2, 0) && zero(0, 1) {
+        Kind::Steady(Steady::new(q0, w, unit))
     } else {
-        Kind::Theta(Box::new(Theta::new(i, q0, w)))
-    };
-    kind.in_time_units_of(scale_w)
+        Kind::Theta(Theta::new(i, q0, w, unit))
+    }
 }
 
 /// Whether one moment is below that of `axis` and one above.
@@ -175,111 +236,81 @@ fn is_middle(i: Vector3<f64>, axis: usize) -> bool {
     i.min() < i[axis] && i[axis] < i.max()
 }
 
+/// The power of two at or below x > 0, where that is a normal number: else the least of those, and 1
+/// for 0.
 fn power_of_two(x: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
     if x == 0.0 {
         1.0
     } else {
-        libm::exp2(libm::floor(libm::log2(x)))
+        f64::from_bits(x.to_bits() & EXPONENT).max(f64::MIN_POSITIVE)
     }
 }
 
-impl Kind {
-    /// The same motion with rates `scale` times as large.
-    fn in_time_units_of(self, scale: f64) -> Self {
-        match self {
-            Self::Steady {
-                q0,
-                axis,
-                turns,
-                omega,
-            } => Self::Steady {
-                q0,
-                axis,
-                turns: turns.scaled(scale),
-                omega: omega * scale,
+impl Steady {
+    /// ω in a unit of rates.
+    fn new(q0: Quaternion<f64>, omega: Vector3<f64>, unit: f64) -> Self {
+        let square = |x: f64| Dd::product(x, x);
+        let rate = square(omega.x)
+            .plus(square(omega.y))
+            .plus(square(omega.z))
+            .sqrt();
+        Self {
+            q0,
+            axis: if rate.hi == 0.0 {
+                Vector3::zeros()
+            } else {
+                omega / rate.hi
             },
-            Self::Theta(mut theta) => {
-                theta.lambda_turns = theta.lambda_turns.scaled(scale);
-                theta.omega_turns = theta.omega_turns.scaled(scale);
-                if let Series::Separatrix { rate, .. } = &mut theta.series {
-                    *rate *= scale;
-                }
-                Self::Theta(theta)
-            }
+            turns: (rate * constants::OVER_FOUR_PI).scaled(unit),
+            omega: omega * unit,
         }
     }
 }
 
-fn steady_rotation(q0: Quaternion<f64>, omega: Vector3<f64>) -> Kind {
-    let squares = omega
-        .iter()
-        .map(|&x| Dd::product(x, x))
-        .fold(Dd::ZERO, |a, b| a + b);
-    let rate = squares.sqrt();
-    let axis = if rate.hi == 0.0 {
-        Vector3::zeros()
-    } else {
-        omega / rate.hi
-    };
-    Kind::Steady {
-        q0,
-        axis,
-        turns: rate / Dd::PI.scaled(4.0),
-        omega,
+impl Theta {
+    /// ω in a unit of rates.
+    fn new(i: Vector3<f64>, q0: Quaternion<f64>, w: Vector3<f64>, unit: f64) -> Self {
+        let branch = Branch::choose(i, w);
+        let Constants { turns, form } = Constants::new(&branch, unit);
+        let mut theta = Self {
+            columns: [
+                Quaternion::new(1.0, 0.0, 0.0, 0.0),
+                Quaternion::new(0.0, 1.0, 0.0, 0.0),
+                Quaternion::new(0.0, 0.0, 1.0, 0.0),
+                Quaternion::new(0.0, 0.0, 0.0, 1.0),
+            ],
+            turns,
+            form,
+        };
+        let start = match &theta.form {
+            Form::Nome(form) => (&theta, form).at(0.0),
+            Form::Complementary(form) => (&theta, form).at(0.0),
+            Form::Separatrix(form) => (&theta, form).at(0.0),
+        };
+        theta.columns = columns(q0, start, &branch);
+        theta
     }
 }
 
-impl Theta {
-    fn new(i: Vector3<f64>, q0: Quaternion<f64>, w: Vector3<f64>) -> Self {
-        let branch = Branch::choose(i, w);
-        let c = Constants::new(&branch);
-        let q_s = branch.permutation;
-        let rate = c.lambda / Dd::PI * branch.sigma;
-        let mut theta = Self {
-            left: Quaternion::identity(),
-            right: q_s,
-            lambda_turns: rate,
-            omega_turns: c.omega / Dd::PI.scaled(4.0),
-            offset: rate * c.t0,
-            series: c.series(),
-        };
-        let start = theta.at(0.0) * q_s;
-        theta.left = q0 * start.conjugate();
-        theta
-    }
-
-    /// `q_b(t)`, unit: `e^{iΩt/2} (α, β)` as (w + iz, x + iy).
-    fn at(&self, t: impl Time) -> Quaternion<f64> {
-        let (mut turns, _) = t.times(self.omega_turns).fraction();
-        let (alpha, beta) = match &self.series {
-            Series::Nome(series) => {
-                let (nu, odd) = self.phase(t);
-                series.at(nu, odd)
-            }
-            Series::Complementary {
-                terms,
-                y_per,
-                turns_per,
-            } => {
-                let (nu, odd) = self.phase(t);
-                turns += nu * turns_per;
-                turns -= nearest(turns);
-                terms.at(y_per * nu, odd)
-            }
-            Series::Separatrix { terms, rate, y0 } => terms.at(rate * t.rough() + y0, false),
-        };
-        let square = |(re, im): (f64, f64)| re * re + im * im;
-        let norm = 1.0 / (square(alpha) + square(beta)).sqrt();
-        let (sin, cos) = libm::sincos(2.0 * PI * turns);
-        let turn = (cos * norm, sin * norm);
-        let ((w, z), (x, y)) = (times(alpha, turn), times(beta, turn));
-        Quaternion::new(w, x, y, z)
-    }
-
-    /// ν reduced to [-π/2, π/2], and whether an odd number of π was taken off.
-    fn phase(&self, t: impl Time) -> (f64, bool) {
-        let (part, whole) = (t.times(self.lambda_turns) + self.offset).fraction();
-        let half = 0.5 * whole;
-        (PI * part, half != nearest(half))
-    }
+/// `q(t) = q0 (q_b(0) q_S)* q_b(t) q_S` as a linear map of q_b(t), q_S the change of axes: turned by it,
+/// a vector has its components in another order and with other signs.
+fn columns(q0: Quaternion<f64>, start: Quaternion<f64>, branch: &Branch) -> [Quaternion<f64>; 4] {
+    let old = |v: Vector3<f64>| {
+        let mut out = Vector3::zeros();
+        for k in 0..3 {
+            out[branch.order[k]] = branch.signs[k] * v[k];
+        }
+        out
+    };
+    let left = q0 * Quaternion::from_parts(start.w, old(-start.imag()));
+    // left times the unit of each axis.
+    let (v, w) = (left.imag(), left.w);
+    let of = [
+        Quaternion::new(-v.x, w, v.z, -v.y),
+        Quaternion::new(-v.y, -v.z, w, v.x),
+        Quaternion::new(-v.z, v.y, -v.x, w),
+    ];
+    let along = |k: usize| of[branch.order[k]] * branch.signs[k];
+    [left, along(0), along(1), along(2)]
 }
