@@ -4,22 +4,26 @@
 //! checks again. Units are SI and radians; degrees exist only in the file.
 
 mod body;
+mod edit;
 mod event;
 mod pairing;
 mod problem;
 mod read;
+mod script;
 mod table;
 
 pub use body::Body;
 pub use event::{Action, Event, Framed};
 pub(crate) use pairing::lasting;
 pub use problem::Problems;
+pub use script::Script;
 
 use crate::effect::Called;
 use crate::integrator::Method;
 use crate::trace::StreamSet;
 use std::io::Read as _;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A scripted run.
 #[derive(Clone)]
@@ -30,8 +34,12 @@ pub struct Scene {
     pub title: String,
     /// The comment that opens the file, as Markdown: what to look at.
     pub notes: String,
-    /// Of the file's text: the same for the same scene.
+    /// The text that it was read from, values put in by arguments or by a sweep included.
+    pub text: Arc<str>,
+    /// Of that text: the same for the same scene.
     pub fingerprint: u64,
+    /// The values that tell it from the others of its sweep: `damping = 0.1`.
+    pub variant: Option<String>,
     /// s.
     pub duration: f64,
     pub stepping: Stepping,
@@ -111,17 +119,7 @@ pub enum SceneError {
 impl Scene {
     /// Reads and checks a scene file.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let file = path.display().to_string();
-        let source = read_to_string(path).map_err(|error| SceneError::Unreadable {
-            why: error.to_string(),
-            remedy: remedy_for(path, &error),
-            file: file.clone(),
-        })?;
-        let name = path.file_stem().map_or_else(
-            || "scene".to_owned(),
-            |stem| stem.to_string_lossy().into_owned(),
-        );
-        Ok(Self::parse(&file, &name, &source)?)
+        Ok(Script::load(path)?.scene()?)
     }
 
     /// Why the scene's method does not take the torques it has; a scene that was parsed has no such
@@ -132,8 +130,23 @@ impl Scene {
 
     /// Checks the text of a scene; `file` is how messages call it.
     pub fn parse(file: &str, name: &str, source: &str) -> Result<Self, Problems> {
-        read::scene(file, name, source)
+        Script::new(file, name, source).scene()
     }
+}
+
+/// What messages call a file, the name of its scene, and its text.
+fn text_of(path: &Path) -> Result<(String, String, String), SceneError> {
+    let file = path.display().to_string();
+    let source = read_to_string(path).map_err(|error| SceneError::Unreadable {
+        why: error.to_string(),
+        remedy: remedy_for(path, &error),
+        file: file.clone(),
+    })?;
+    let name = path.file_stem().map_or_else(
+        || "scene".to_owned(),
+        |stem| stem.to_string_lossy().into_owned(),
+    );
+    Ok((file, name, source))
 }
 
 /// A scene's bytes at most: 10,000 bodies take two million.

@@ -26,8 +26,6 @@ const MOST_ROWS: f64 = 3e7;
 const MOST_STEPS: f64 = 9e15;
 
 pub(super) fn scene(file: &str, name: &str, source: &str) -> Result<Scene, Problems> {
-    // Some editors open a file with a mark of its encoding.
-    let source = source.strip_prefix('\u{feff}').unwrap_or(source);
     let mut problems = Problems::new(file, source);
     let (document, errors) = DeTable::parse_recoverable(source);
     // After the first faults a parser guesses.
@@ -78,11 +76,15 @@ fn read(top: &Table<'_>, name: &str, source: &str, problems: &mut Problems) -> O
     }
     let clock = event::Clock { duration, step };
     let events = event::read_all(&events, &bodies, clock, problems);
+    // What it says is looked at where its values are put in.
+    top.get("sweep");
     let scene = Scene {
         name: name.to_owned(),
         title: title.replace(char::is_control, " "),
         notes: opening_comment(source),
+        text: source.into(),
         fingerprint: fingerprint(source),
+        variant: None,
         duration: duration?,
         stepping: stepping?,
         step: step?,
