@@ -7,6 +7,7 @@
 
 mod blueprint;
 mod columns;
+mod compare;
 mod heading;
 mod layout;
 mod look;
@@ -14,12 +15,17 @@ mod mesh;
 mod page;
 mod picture;
 mod price;
+mod provenance;
+mod read;
 mod recorder;
 mod rrd;
 mod scale;
 mod viewer;
 
+pub use compare::{Comparison, Difference, Verdict};
 pub use heading::Heading;
+pub use provenance::{Provenance, VERSION};
+pub use read::{Made, ReadError, is_recording, read};
 pub use recorder::{Recorder, Summary};
 pub use viewer::{Assets, native_version_line};
 
