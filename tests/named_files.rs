@@ -15,11 +15,11 @@ fn body(keys: &str) -> String {
 
 fn robots(keys: &str) -> Result<Scene, String> {
     let folder = folder("tests/fixtures/robots");
-    Scene::parse_with("s.toml", "s", &body(keys), &folder).map_err(|why| why.to_string())
+    Scene::parse_with("s.toml", "s", &body(keys), folder).map_err(|why| why.to_string())
 }
 
 fn meshes(keys: &str) -> Result<Scene, String> {
-    Scene::parse_with("s.toml", "s", &body(keys), &folder("scenes")).map_err(|why| why.to_string())
+    Scene::parse_with("s.toml", "s", &body(keys), folder("scenes")).map_err(|why| why.to_string())
 }
 
 const HANDLE: &str =
@@ -49,21 +49,21 @@ fn a_scene_runs_again_from_its_text_and_what_was_kept() {
         panic!("one file, read once")
     };
     assert_eq!(*kept, Enclosure::new("t_handle.obj", kept.bytes.to_vec()));
-    let again = Scene::parse_with("s.toml", "s", &body(HANDLE), &first.enclosures[..]).unwrap();
+    let again = Scene::parse_with("s.toml", "s", &body(HANDLE), first.enclosures.clone()).unwrap();
     assert_eq!(again.fingerprint, first.fingerprint);
     assert_eq!(again.bodies[0].properties, first.bodies[0].properties);
     // The same text with another mesh is another scene.
     let mut bytes = kept.bytes.to_vec();
     bytes.extend(b"\n# another\n");
     let other = [Enclosure::new("t_handle.obj", bytes)];
-    let other = Scene::parse_with("s.toml", "s", &body(HANDLE), &other[..]).unwrap();
+    let other = Scene::parse_with("s.toml", "s", &body(HANDLE), other.to_vec()).unwrap();
     assert_ne!(other.fingerprint, first.fingerprint);
     // A thousand bodies of one mesh: read once.
     let many: String = (0..1_000)
         .map(|k| format!("[[body]]\nname = \"b{k}\"\n{HANDLE}\n"))
         .collect();
     let many = format!("duration = 0.1\n{many}");
-    let many = Scene::parse_with("s.toml", "s", &many, &folder("scenes")).unwrap();
+    let many = Scene::parse_with("s.toml", "s", &many, folder("scenes")).unwrap();
     assert_eq!((many.bodies.len(), many.enclosures.len()), (1_000, 1));
     // Text alone has no files.
     let why = Scene::parse("s.toml", "s", &body(HANDLE))
@@ -99,7 +99,7 @@ fn what_is_wrong_with_a_mesh_is_told_at_its_place() {
         b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec(),
     )];
     let keys = body("shape = { mesh = { file = \"o.obj\" } }\nmass = 1.0");
-    let open = Scene::parse_with("s.toml", "s", &keys, &open[..])
+    let open = Scene::parse_with("s.toml", "s", &keys, open.to_vec())
         .err()
         .unwrap()
         .to_string();

@@ -9,6 +9,7 @@ use torquescope::body::{Inertial, State};
 use torquescope::mass::tensor::{check_held, check_physical, parallel_axis, turned};
 use torquescope::mass::{MassProperties, solids::SOLIDS};
 use torquescope::math::symmetric_eigen;
+use torquescope::scene::{Scene, Script};
 
 fn vector(size: f64) -> impl Strategy<Value = Vector3<f64>> {
     [-size..size, -size..size, -size..size].prop_map(Vector3::from)
@@ -136,6 +137,59 @@ proptest! {
             prop_assert!(checked.is_ok(), "{}", kind.name);
             let twice = solid.moments(2.0 * mass);
             prop_assert!((twice - moments * 2.0).norm() <= 1e-15 * twice.norm());
+        }
+    }
+}
+
+/// Scenes to be maltreated: those that ship, and ways of writing that they do not use.
+fn texts() -> Vec<String> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let files = std::fs::read_dir(folder).unwrap().flatten();
+    let mut texts: Vec<String> = files
+        .map(|file| std::fs::read_to_string(file.path()).unwrap())
+        .collect();
+    let body = "mass = 1, inertia = [1, 1, 1]";
+    texts.push(format!("duration = 1\neffects.damping.angular = 1\nbody = [{{ name = \"a\", {body} }}, {{ name = \"b\", {body} }}]\nevent = [{{ at = 0.5, body = \"a\", torque = [1, 0, 0], for = 0.1 }}]\nsweep = {{ step = [0.1, 0.2] }}"));
+    texts.push(format!("# Notes.\r\nduration = 1\r\n[effects.damping] # ä\r\nangular = 1\r\n[[body]]\r\nname = \"a\"\r\n{}\r\n[sweep.body.a]\r\nmass = [\r\n  1, # one\r\n  2\r\n]", body.replace(", i", "\r\ni")));
+    texts
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// Whatever the text and whatever is set in it: scenes or reasons, and a scene is what its text says.
+    #[test]
+    fn values_put_into_any_text(
+        which in 0..64_usize,
+        cut in (0..4000_usize, 0..40_usize),
+        paths in prop::collection::vec((0..16_usize, 0..9_usize), 0..3),
+        until in prop::option::of(0.0..3.0_f64),
+    ) {
+        const PATHS: [&str; 16] = ["duration", "step", "damping", "effects.damping.linear", "gravity", "gyroscopic", "method", "a.mass", "body.0.shape.cone.radius", "event.0.at", "event.0.force.x", "sweep.step", "effects", "record.streams", "\"a.b\".c", "stepping.tolerance"];
+        const VALUES: [&str; 9] = ["0.01", "[0, 1, 2]", "jolt", "true", "{ a = 1 }", "\"ä\"", "[\n1 # one\n]", "-1e400", "[{}"];
+        let texts = texts();
+        let text = &texts[which % texts.len()];
+        let floor = |mut at: usize| {
+            at = at.min(text.len());
+            while !text.is_char_boundary(at) { at -= 1; }
+            at
+        };
+        let (from, to) = (floor(cut.0), floor(cut.0 + cut.1));
+        let text = format!("{}{}", &text[..from], &text[to..]);
+        let mut script = Script::new("s.toml", "s", &text);
+        for (path, value) in paths {
+            let set = format!("{}={}", PATHS[path], VALUES[value]);
+            let _ = script.set(&set, &format!("--set {set}"));
+        }
+        if let Some(end) = until {
+            script.end_at(end, "--until");
+        }
+        match script.scenes() {
+            Err(problems) => prop_assert!(!problems.to_string().is_empty()),
+            Ok(scenes) => for scene in scenes {
+                let again = Scene::parse("again", "s", &scene.text).map_err(|why| TestCaseError::fail(format!("{why}\n{}", scene.text)))?;
+                prop_assert_eq!(again.fingerprint, scene.fingerprint);
+            },
         }
     }
 }

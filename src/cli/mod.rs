@@ -11,11 +11,12 @@ mod mass;
 mod print;
 mod run;
 mod scenes;
+mod verify;
 mod view;
 
 use crate::cost::PlanError;
 use crate::live::page::PageError;
-use crate::record::RecordError;
+use crate::record::{ReadError, RecordError};
 use crate::scene::SceneError;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -87,6 +88,7 @@ fn code(error: &anyhow::Error) -> u8 {
     let nowhere = record.is_some_and(|error| !matches!(error, RecordError::Write { .. }));
     let input = error.is::<SceneError>()
         || matches!(error.downcast_ref(), Some(PlanError::BeyondReach { .. }))
+        || error.is::<ReadError>()
         || error.is::<Wrong>()
         || error.is::<PageError>();
     if input || nowhere { 2 } else { 1 }

@@ -1,24 +1,58 @@
-//! `run SCENE`: simulate, record, say what happened.
+//! `run SCENE`: simulate, record, say what happened; of a recording the same again.
 
-use super::{Wrong, explain, print, view};
+use super::{Wrong, explain, print, verify, view};
 use crate::cost::{Plan, PlanError};
 use crate::effect::Profile;
-use crate::record::{Heading, Recorder, Summary};
-use crate::scene::{Event, Scene, Stepping};
+use crate::record::{self, Heading, Made, Provenance, RecordError, Recorder, Summary};
+use crate::scene::{Event, Scene, SceneError, Script, Stepping};
 use crate::sim::{Blow, Outcome, SimError, Simulation};
 use crate::trace::{Sample, Subject, short, short_numbers, short_vector};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Simulate a scene and record it.
+///
+/// A recording is as good as a scene: it holds the text it was made from, and is run again.
 #[derive(clap::Args)]
-#[command(after_help = "Example: torquescope run scenes/cone.toml --view")]
+#[command(
+    after_help = "Example: torquescope run scenes/cone.toml --view\n         torquescope run scenes/cone.toml --set body.free-A.mass=2 --until 0.5\n         torquescope run cone.rrd --verify"
+)]
 pub struct Arguments {
-    /// The scene, a TOML file.
-    scene: PathBuf,
-    /// Where the recording goes [default: the scene's name with .rrd, in the current folder].
+    /// The scene, a TOML file; or a recording of one, an .rrd file.
+    pub(super) scene: PathBuf,
+    /// Where the recording goes [default: the scene's name with .rrd, in the current folder; of a
+    /// recording that is run again its name with -again.rrd].
     #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
+    /// Give a value of the scene another, such as body.cone.mass=2, effects.damping.angular=0.1,
+    /// event.0.force=[1,0,0]; again for more.
+    #[arg(long, value_name = "PATH=VALUE", allow_hyphen_values = true)]
+    set: Vec<String>,
+    /// End the scene at this time instead of its own (s).
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    until: Option<f64>,
+    /// Step by this method (`torquescope methods`).
+    #[arg(long, value_name = "NAME", conflicts_with = "accuracy")]
+    method: Option<String>,
+    /// Steps of this length (s).
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        allow_hyphen_values = true,
+        conflicts_with = "accuracy"
+    )]
+    step: Option<f64>,
+    /// However it is done, keep attitudes this true (rad).
+    #[arg(long, value_name = "RADIANS", allow_hyphen_values = true)]
+    accuracy: Option<f64>,
+    /// Simulated seconds a second at which the recording plays when opened.
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true)]
+    pub(super) speed: Option<f64>,
+    /// Of a recording: run it again and say whether that gives the same bits, and if not, the
+    /// first step, body and quantity that differ. Writes the new run, with a mark there, only
+    /// where --out says. Exit code 0: the same; 1: not; 2: it cannot be told.
+    #[arg(long)]
+    verify: bool,
     /// Open the recording afterwards, in the viewer that this program carries.
     #[arg(long)]
     view: bool,
@@ -28,57 +62,285 @@ pub struct Arguments {
     /// method and step, the error to be expected and the error there was.
     #[arg(long)]
     explain: bool,
-    /// Print one JSON object with every digit instead of tables.
+    /// Print one JSON object with every digit instead of tables; a list of them for a sweep.
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.serve.is_asked_for() && !arguments.view {
         return Err(Wrong("--port and --no-browser say how to view; add --view".to_owned()).into());
     }
-    let scene = Scene::load(&arguments.scene)?;
-    let path = match &arguments.out {
-        Some(path) => path.clone(),
-        None => PathBuf::from(format!("{}.rrd", scene.name)),
-    };
-    let plan = plan(&scene, arguments.explain)?;
+    if let Some(speed) = arguments.speed.filter(|x| !(x.is_finite() && *x > 0.0)) {
+        return Err(Wrong(format!(
+            "--speed {speed:?} is no speed to play at; write a factor above 0, such as 0.5"
+        ))
+        .into());
+    }
+    let made = made(arguments)?;
+    if arguments.verify {
+        let Some(made) = &made else {
+            let file = arguments.scene.display();
+            return Err(Wrong(format!(
+                "{file} is a scene; --verify takes a recording of one"
+            ))
+            .into());
+        };
+        return verify::run(arguments, made);
+    }
+    let scenes = scenes(arguments, made.as_ref())?;
+    let path = place(arguments, made.is_some(), &scenes[0])?;
+    let plans = plans(&scenes, arguments.explain)?;
     let page = match arguments.view {
         true => Some(view::bind(&path, &arguments.serve)?),
         false => None,
     };
-    let simulation = Simulation::new(&scene);
-    let subjects = simulation.subjects().to_vec();
-    let heading = Heading::of(&scene, &simulation);
-    let mut recorder = Recorder::create(&path, &heading, &subjects)?;
-    let (outcome, done) = match &plan {
-        Some(plan) => simulation.run_by(&mut plan.chooser(), &mut recorder),
-        None => simulation.run(&mut recorder),
-    };
-    if let Err(SimError::Sink(error)) = done {
-        // The file itself failed: nothing more can be written to it.
-        return Err(error.into());
-    }
-    // Whatever the run came to, the file is closed whole and what there is of it is told.
-    let summary = recorder.finish()?;
+    let headings = headings(&scenes, arguments, made.is_some());
+    let start =
+        |heading: &Heading, subjects: &[Subject]| Recorder::create(&path, heading, subjects);
+    let (ran, summary) = record(&scenes, &plans, &headings, start)?;
     if arguments.json {
-        let mut report = Report::new(&scene, &subjects, &outcome, &summary, done.as_ref().err());
-        report.plan = plan.as_ref().map(|plan| explain::report(plan, &subjects));
-        print::json(&report)?;
+        report(&scenes, &plans, &ran, &summary)?;
     } else {
-        let mut text = tables(&scene, &subjects, &outcome, &summary, done.is_ok());
-        if let Some(plan) = &plan {
-            text += &explain::table(plan, &subjects);
-        }
-        print::out(&text)?;
+        print::out(&texts(&scenes, &plans, &ran, &summary))?;
     }
+    let failed: Vec<String> = ran
+        .iter()
+        .filter_map(|ran| ran.done.as_ref().err().map(ToString::to_string))
+        .collect();
     if let Some(page) = page {
-        if let Err(error) = &done {
-            print::err(&error.to_string());
+        for error in &failed {
+            print::err(error);
         }
         view::serve(&page, &arguments.serve, arguments.json)?;
     }
-    done.map_err(|error| anyhow::anyhow!("{error}; everything up to that instant is recorded"))
+    match failed.is_empty() {
+        true => Ok(()),
+        false => Err(anyhow::anyhow!(
+            "{}; everything up to that instant is recorded",
+            failed.join("\n")
+        )),
+    }
+}
+
+impl Arguments {
+    /// Whether the scene is to be changed.
+    pub(super) fn changes(&self) -> bool {
+        let numbers = [self.until, self.step, self.accuracy];
+        !self.set.is_empty() || self.method.is_some() || numbers.iter().any(Option::is_some)
+    }
+
+    pub(super) fn views(&self) -> bool {
+        self.view
+    }
+
+    fn change(&self, script: &mut Script) -> anyhow::Result<()> {
+        for assignment in &self.set {
+            let argument = format!("--set {assignment}");
+            script.set(assignment, &argument).map_err(Wrong)?;
+        }
+        if let Some(name) = &self.method {
+            script.set_method(name, &format!("--method {name}"));
+        }
+        if let Some(step) = self.step {
+            script.set_step(step, &format!("--step {step}"));
+        }
+        if let Some(accuracy) = self.accuracy {
+            script.set_accuracy(accuracy, &format!("--accuracy {accuracy}"));
+        }
+        if let Some(end) = self.until {
+            script.end_at(end, &format!("--until {end}"));
+        }
+        Ok(())
+    }
+}
+
+/// What the recording is made from, where it is one that is named.
+fn made(arguments: &Arguments) -> anyhow::Result<Option<Made>> {
+    let path = &arguments.scene;
+    let is_called_one = path.extension().is_some_and(|ending| ending == "rrd");
+    match is_called_one || record::is_recording(path) {
+        true => Ok(Some(record::read(path)?)),
+        false => Ok(None),
+    }
+}
+
+/// The scenes to run: at least one.
+pub(super) fn scenes(arguments: &Arguments, made: Option<&Made>) -> anyhow::Result<Vec<Scene>> {
+    let scripts = match made {
+        None => vec![Script::load(&arguments.scene)?],
+        Some(made) => {
+            let file = format!("{} (its scene)", arguments.scene.display());
+            let script = |from: &Provenance| {
+                let name = from.fact("scene").unwrap_or("scene");
+                Script::new(&file, name, &from.text)
+                    .with_files(from.files.clone())
+                    .of_variant(from.fact("variant"))
+            };
+            made.recordings.iter().map(script).collect()
+        }
+    };
+    let mut scenes: Vec<Scene> = Vec::new();
+    for mut script in scripts {
+        arguments.change(&mut script)?;
+        for scene in script.scenes().map_err(SceneError::Wrong)? {
+            // Recordings that differed in what is set now are one.
+            if !scenes
+                .iter()
+                .any(|other| other.fingerprint == scene.fingerprint)
+            {
+                scenes.push(scene);
+            }
+        }
+    }
+    Ok(scenes)
+}
+
+/// Where the recording goes: never where the one is that is run again.
+fn place(arguments: &Arguments, again: bool, scene: &Scene) -> anyhow::Result<PathBuf> {
+    let input = &arguments.scene;
+    let path = match (&arguments.out, again) {
+        (Some(path), _) => path.clone(),
+        (None, false) => PathBuf::from(format!("{}.rrd", scene.name)),
+        (None, true) => {
+            let stem = input.file_stem().unwrap_or_default().to_string_lossy();
+            PathBuf::from(format!("{stem}-again.rrd"))
+        }
+    };
+    must_not_be_input(&path, input)?;
+    Ok(path)
+}
+
+pub(super) fn must_not_be_input(path: &Path, input: &Path) -> anyhow::Result<()> {
+    let same = match (path.canonicalize(), input.canonicalize()) {
+        (Ok(path), Ok(input)) => path == input,
+        _ => false,
+    };
+    // A scene is told apart by what it holds, where it would be written over.
+    if same && record::is_recording(input) {
+        return Err(Wrong(format!(
+            "{} is what is run; choose another name for the new recording",
+            path.display()
+        ))
+        .into());
+    }
+    Ok(())
+}
+
+pub(super) fn plans(scenes: &[Scene], explain: bool) -> anyhow::Result<Vec<Option<Plan>>> {
+    scenes.iter().map(|scene| plan(scene, explain)).collect()
+}
+
+pub(super) fn headings(scenes: &[Scene], arguments: &Arguments, again: bool) -> Vec<Heading> {
+    let heading = |scene: &Scene| {
+        let mut heading = Heading::of(scene, &Simulation::new(scene));
+        heading.one_of_several = scenes.len() > 1;
+        heading.provenance = Some(Provenance::of(scene));
+        heading.speed = arguments.speed;
+        if again {
+            // Beside the first in one viewer it is another.
+            heading.id += "-again";
+            heading.title += " (again)";
+        }
+        heading
+    };
+    let mut headings: Vec<Heading> = scenes.iter().map(heading).collect();
+    Heading::share_scales(&mut headings);
+    headings
+}
+
+/// What running one scene came to.
+pub(super) struct Ran {
+    pub subjects: Vec<Subject>,
+    pub outcome: Outcome,
+    pub done: Result<(), SimError>,
+}
+
+/// Runs scenes, one after another, into one file.
+pub(super) fn record(
+    scenes: &[Scene],
+    plans: &[Option<Plan>],
+    headings: &[Heading],
+    start: impl Fn(&Heading, &[Subject]) -> Result<Recorder, RecordError>,
+) -> anyhow::Result<(Vec<Ran>, Summary)> {
+    let mut recorder: Option<Recorder> = None;
+    let mut all = Vec::new();
+    for ((scene, plan), heading) in scenes.iter().zip(plans).zip(headings) {
+        let simulation = Simulation::new(scene);
+        let subjects = simulation.subjects().to_vec();
+        let mut sink = match recorder.take() {
+            None => start(heading, &subjects)?,
+            Some(recorder) => recorder.then(heading, &subjects)?,
+        };
+        let (outcome, done) = match plan {
+            Some(plan) => simulation.run_by(&mut plan.chooser(), &mut sink),
+            None => simulation.run(&mut sink),
+        };
+        if let Err(SimError::Sink(error)) = done {
+            // The file itself failed: nothing more can be written to it.
+            return Err(error.into());
+        }
+        all.push(Ran {
+            subjects,
+            outcome,
+            done,
+        });
+        recorder = Some(sink);
+    }
+    // Whatever the run came to, the file is closed whole and what there is of it is told.
+    let summary = recorder.map(Recorder::finish).transpose()?;
+    let summary = summary.ok_or_else(|| anyhow::anyhow!("there is nothing to run"))?;
+    Ok((all, summary))
+}
+
+fn report(
+    scenes: &[Scene],
+    plans: &[Option<Plan>],
+    ran: &[Ran],
+    summary: &Summary,
+) -> anyhow::Result<()> {
+    let all = scenes.iter().zip(plans).zip(ran);
+    let reports = all.map(|((scene, plan), ran)| {
+        let mut report = Report::new(
+            scene,
+            &ran.subjects,
+            &ran.outcome,
+            summary,
+            ran.done.as_ref().err(),
+        );
+        report.plan = plan
+            .as_ref()
+            .map(|plan| explain::report(plan, &ran.subjects));
+        report
+    });
+    let reports: Vec<Report> = reports.collect();
+    match reports.as_slice() {
+        [one] => print::json(one),
+        several => print::json(&several),
+    }
+}
+
+fn texts(scenes: &[Scene], plans: &[Option<Plan>], ran: &[Ran], summary: &Summary) -> String {
+    let mut text = String::new();
+    for ((scene, plan), ran) in scenes.iter().zip(plans).zip(ran) {
+        if let Some(variant) = &scene.variant {
+            text += &format!("{variant}\n");
+        }
+        text += &tables(scene, &ran.subjects, &ran.outcome, ran.done.is_ok());
+        if let Some(plan) = plan {
+            text += &explain::table(plan, &ran.subjects);
+        }
+        text += "\n\n";
+    }
+    let path = summary.path.display();
+    let several = match scenes.len() {
+        1 => String::new(),
+        n => format!(", {n} recordings, to be chosen between in the panel on the left"),
+    };
+    text + &format!(
+        "{path}: {} bytes, {} rows{several}\nto open it: torquescope view {path}  (or cargo run --release -- view {path})",
+        summary.bytes, summary.rows,
+    )
 }
 
 /// A scene that states an accuracy needs a plan; one that states a method has one where the user
@@ -105,13 +367,7 @@ fn plan(scene: &Scene, explain: bool) -> anyhow::Result<Option<Plan>> {
     }
 }
 
-fn tables(
-    scene: &Scene,
-    subjects: &[Subject],
-    outcome: &Outcome,
-    summary: &Summary,
-    whole: bool,
-) -> String {
+fn tables(scene: &Scene, subjects: &[Subject], outcome: &Outcome, whole: bool) -> String {
     let mut text = format!(
         "{}\nmethod {}, step {} s; steps: {}, bodies: {}\n",
         scene.title,
@@ -156,13 +412,6 @@ fn tables(
         .map(|(s, m)| end_row(s, m))
         .collect();
     text += &print::table(&header, rows);
-    text += &format!(
-        "\n\n{}: {} bytes, {} rows\nto open it: torquescope view {}  (or cargo run --release -- view {0})",
-        summary.path.display(),
-        summary.bytes,
-        summary.rows,
-        summary.path.display(),
-    );
     text
 }
 
@@ -232,6 +481,9 @@ fn end_row(subject: &Subject, sample: &Sample) -> Vec<String> {
 struct Report<'a> {
     scene: &'a str,
     title: &'a str,
+    /// The values that tell it from the scene's file, or from others of its sweep.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    variant: Option<&'a str>,
     method: &'static str,
     step: f64,
     steps: u64,
@@ -321,6 +573,7 @@ impl<'a> Report<'a> {
         Self {
             scene: &scene.name,
             title: &scene.title,
+            variant: scene.variant.as_deref(),
             method: scene.stepping.name(),
             step: scene.step,
             steps: outcome.steps,

@@ -3,6 +3,7 @@
 use crate::trace::Instant;
 use rerun::external::arrow::array::{
     Array as _, ArrayRef, FixedSizeListArray, Float32Array, Float64Array, ListArray, StringArray,
+    UInt64Array,
 };
 use rerun::external::arrow::buffer::{OffsetBuffer, ScalarBuffer};
 use rerun::external::arrow::datatypes::Field;
@@ -72,6 +73,11 @@ impl Ends {
 pub fn numbers(descriptor: ComponentDescriptor, values: Vec<f64>, ends: Ends) -> Column {
     let values = Arc::new(Float64Array::new(ScalarBuffer::from(values), None));
     (descriptor, list(values, ends))
+}
+
+/// Whole numbers.
+pub fn counts(descriptor: ComponentDescriptor, values: Vec<u64>, ends: Ends) -> Column {
+    (descriptor, list(Arc::new(UInt64Array::from(values)), ends))
 }
 
 /// f32 vectors of `width` components.

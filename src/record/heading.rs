@@ -1,5 +1,6 @@
 //! What a recording says of itself, besides its trace.
 
+use super::provenance::Provenance;
 use super::scale::Scales;
 use crate::cost::Cost;
 use crate::scene::Scene;
@@ -9,6 +10,14 @@ use crate::trace::StreamSet;
 /// Title, notes and how it opens.
 pub struct Heading {
     pub title: String,
+    /// What tells it from other recordings of the scene: `damping = 0.1`.
+    pub variant: Option<String>,
+    /// Whether it is one of several in a file, among which a viewer is to choose.
+    pub one_of_several: bool,
+    /// What it is made from, where it can be run again from that.
+    pub provenance: Option<Provenance>,
+    /// Simulated seconds a second at which it opens; by the shortest event where nothing is said.
+    pub speed: Option<f64>,
     /// Markdown: what the scene shows and what to look for.
     pub notes: String,
     /// Tells recordings apart in a viewer; the same for the same scene.
@@ -36,6 +45,10 @@ impl Heading {
             .filter(|&s| s > 0.0);
         Self {
             title: scene.title.clone(),
+            variant: scene.variant.clone(),
+            one_of_several: false,
+            provenance: None,
+            speed: None,
             notes: scene.notes.clone(),
             id: format!("{}-{:016x}", scene.name, scene.fingerprint),
             duration: scene.duration,
@@ -46,6 +59,25 @@ impl Heading {
             streams: scene.record.streams,
             price: None,
             scales: Scales::new(simulation.subjects(), &simulation.expected()),
+        }
+    }
+
+    /// Draws several recordings on one scale, so that arrows can be compared by their lengths.
+    pub fn share_scales(headings: &mut [Self]) {
+        let scales = headings.iter().map(|heading| heading.scales.clone());
+        let Some(shared) = scales.reduce(Scales::smaller) else {
+            return;
+        };
+        for heading in headings {
+            heading.scales = shared.clone();
+        }
+    }
+
+    /// As a viewer lists it: what tells it from others first.
+    pub fn name(&self) -> String {
+        match &self.variant {
+            None => self.title.clone(),
+            Some(variant) => format!("{variant} · {}", self.title),
         }
     }
 

@@ -10,6 +10,7 @@ use super::look;
 use super::mesh;
 use super::picture::DRAWN;
 use super::price;
+use super::provenance;
 use super::rrd::RrdFile;
 use super::scale;
 use super::sources;
@@ -143,7 +144,9 @@ const PLOTS: [Plot; 9] = [
 /// The text panel: what the scene shows.
 pub fn notes(setting: &Setting<'_>) -> String {
     let heading = setting.heading;
-    format!("# {}\n\n{}\n", heading.title, heading.notes)
+    let variant = heading.variant.as_ref();
+    let variant = variant.map_or(String::new(), |variant| format!("**{variant}**\n\n"));
+    format!("# {}\n\n{variant}{}\n", heading.title, heading.notes)
 }
 
 /// How to read the picture.
@@ -217,11 +220,16 @@ fn price_tab(blueprint: &mut Blueprint<'_>) -> Result<Part, RecordError> {
 }
 
 fn panels(blueprint: &mut Blueprint<'_>, heading: &Heading) -> Result<(), RecordError> {
-    let speed = heading
-        .shortest_event
-        .map_or(1.0, |s| scale::nice(s / SEEN_FOR).clamp(1e-3, 1.0));
+    let by_event = |s: f64| scale::nice(s / SEEN_FOR).clamp(1e-3, 1.0);
+    let by_events = heading.shortest_event.map_or(1.0, by_event);
+    let speed = heading.speed.unwrap_or(by_events);
     let hidden = ba::PanelBlueprint::new().with_state(bc::PanelState::Hidden);
-    blueprint.log("blueprint_panel", &hidden)?;
+    // Recordings are listed, and chosen, in the panel of the blueprint.
+    let listed = match heading.one_of_several {
+        true => ba::PanelBlueprint::new().with_state(bc::PanelState::Expanded),
+        false => hidden.clone(),
+    };
+    blueprint.log("blueprint_panel", &listed)?;
     blueprint.log("selection_panel", &hidden)?;
     let time = ba::TimePanelBlueprint::new()
         .with_state(bc::PanelState::Collapsed)
@@ -245,10 +253,13 @@ fn overview(blueprint: &mut Blueprint<'_>, setting: &Setting<'_>) -> Result<Part
         &[picture, log],
         &[5.0, 1.0],
     )?;
-    let notes = [
+    let mut notes = vec![
         document(blueprint, "what to look at", "/notes")?,
         document(blueprint, "reading the picture", "/legend")?,
     ];
+    if setting.heading.provenance.is_some() {
+        notes.push(document(blueprint, "the scene", provenance::TEXT)?);
+    }
     let notes = blueprint.container(ContainerKind::Tabs, "text", &notes, &[])?;
     let mut texts = vec![notes];
     if setting.heading.streams.contains("numbers") {

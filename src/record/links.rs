@@ -52,6 +52,7 @@ pub fn links(path: &Path, robot: &Description) -> Result<Summary, RecordError> {
         path: path.to_owned(),
         bytes,
         rows,
+        verdicts: Vec::new(),
     })
 }
 

@@ -7,6 +7,7 @@
 
 mod blueprint;
 mod columns;
+mod compare;
 mod heading;
 mod layout;
 mod links;
@@ -15,14 +16,19 @@ mod mesh;
 mod page;
 mod picture;
 mod price;
+mod provenance;
+mod read;
 mod recorder;
 mod rrd;
 mod scale;
 mod sources;
 mod viewer;
 
+pub use compare::{Comparison, Difference, Verdict};
 pub use heading::Heading;
 pub use links::links;
+pub use provenance::{Provenance, VERSION};
+pub use read::{Made, ReadError, is_recording, read};
 pub use recorder::{Recorder, Summary};
 pub use viewer::{Assets, native_version_line};
 

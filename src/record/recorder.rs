@@ -1,7 +1,8 @@
 //! A trace on its way into a file: buffered by body, written by whole chunks.
 
 use super::RecordError;
-use super::columns::{Ends, Times, numbers, texts, vectors};
+use super::columns::{Ends, Times, counts, numbers, texts, vectors};
+use super::compare::{Comparison, Difference, Verdict};
 use super::heading::Heading;
 use super::layout::{self, MOST_TABS, Setting};
 use super::look;
@@ -12,7 +13,7 @@ use super::price;
 use super::rrd::{RrdFile, Store};
 use super::sources::{self, Sources};
 use crate::trace::{
-    Instant, Motion, Note, NoteKind, Quantity, Sample, Sink, SinkError, Subject, Track,
+    Instant, Motion, Note, NoteKind, Quantity, STREAMS, Sample, Sink, SinkError, Subject, Track,
 };
 use rerun::archetypes::{
     CoordinateFrame, Ellipsoids3D, Mesh3D, Points3D, RecordingInfo, StateChange, TextDocument,
@@ -29,10 +30,28 @@ const DERIVED_ROWS: usize = 256;
 /// Rows buffered over all bodies, so that memory does not grow with their number.
 const BUFFERED_ROWS: usize = 1 << 17;
 
-/// Writes a trace to an `.rrd` file.
+/// Where the hashes of all states are.
+pub(super) const HASHES: &str = "/hashes";
+
+/// The columns of numbers, in the order of the lists.
+pub(super) fn number_columns() -> impl Iterator<Item = &'static str> {
+    let quantities = STREAMS.iter().flat_map(|stream| stream.quantities);
+    quantities.map(|quantity| quantity.name)
+}
+
+/// Writes traces to an `.rrd` file, one after another.
 pub struct Recorder {
     path: PathBuf,
     file: RrdFile,
+    /// What the recordings that have ended came to beside those they are held against.
+    verdicts: Vec<Verdict>,
+    trace: Trace,
+}
+
+/// The trace that is being written.
+struct Trace {
+    hash_times: Times,
+    hashes: Vec<u64>,
     bodies: Vec<BodyRecorder>,
     state_rows: usize,
     derived_rows: usize,
@@ -46,6 +65,8 @@ pub struct Summary {
     pub path: PathBuf,
     pub bytes: u64,
     pub rows: u64,
+    /// One for each recording, where they were held against others.
+    pub verdicts: Vec<Verdict>,
 }
 
 struct BodyRecorder {
@@ -79,31 +100,108 @@ impl Recorder {
         Self::into_file(file, Path::new(""), heading, subjects)
     }
 
+    /// Holds what is recorded against earlier recordings of it; the file is for who wants to look.
+    pub fn comparing(
+        comparison: Comparison,
+        path: Option<&Path>,
+        heading: &Heading,
+        subjects: &[Subject],
+    ) -> Result<Self, RecordError> {
+        let mut file = match path {
+            Some(path) => RrdFile::create(path, &heading.id)?,
+            None => RrdFile::nowhere(&heading.id)?,
+        };
+        file.compare_with(comparison);
+        Self::into_file(file, path.unwrap_or(Path::new("")), heading, subjects)
+    }
+
     fn into_file(
         mut file: RrdFile,
         path: &Path,
         heading: &Heading,
         subjects: &[Subject],
     ) -> Result<Self, RecordError> {
-        let setting = Setting { heading, subjects };
-        layout::write(&mut file, &setting)?;
+        layout::write(&mut file, &Setting { heading, subjects })?;
         file.begin_recording()?;
+        Ok(Self {
+            path: path.to_owned(),
+            trace: Trace::begin(&mut file, heading, subjects)?,
+            file,
+            verdicts: Vec::new(),
+        })
+    }
+
+    /// Ends this recording and begins another in the same file.
+    pub fn then(mut self, heading: &Heading, subjects: &[Subject]) -> Result<Self, RecordError> {
+        self.end()?;
+        self.file.next_recording(&heading.id)?;
+        self.trace = Trace::begin(&mut self.file, heading, subjects)?;
+        Ok(self)
+    }
+
+    /// Writes what is buffered and closes the file.
+    pub fn finish(mut self) -> Result<Summary, RecordError> {
+        self.end()?;
+        let (bytes, rows) = self.file.finish()?;
+        Ok(Summary {
+            path: self.path,
+            bytes,
+            rows,
+            verdicts: self.verdicts,
+        })
+    }
+
+    fn end(&mut self) -> Result<(), RecordError> {
+        self.trace.flush(&mut self.file)?;
+        let Some(verdict) = self.file.verdict() else {
+            return Ok(());
+        };
+        if let Some(difference) = &verdict.difference {
+            mark(&mut self.file, difference)?;
+        }
+        self.verdicts.push(verdict);
+        Ok(())
+    }
+}
+
+/// Marks on the timeline where a run parts from what it is held against.
+fn mark(file: &mut RrdFile, difference: &Difference) -> Result<(), RecordError> {
+    let at = TimePoint::default()
+        .with(Timeline::new_duration("sim_time"), difference.time)
+        .with(Timeline::new_sequence("step"), difference.step as i64);
+    let line = TextLog::new(format!("first difference from the recording {difference}"))
+        .with_level(TextLogLevel::WARN)
+        .with_color(Color::from(look::FORCE));
+    file.remark("/events", at.clone(), &line)?;
+    file.remark("/events/verify", at, &StateChange::single("differs"))
+}
+
+impl Trace {
+    fn begin(
+        file: &mut RrdFile,
+        heading: &Heading,
+        subjects: &[Subject],
+    ) -> Result<Self, RecordError> {
+        let setting = Setting { heading, subjects };
         let mut bodies = Vec::with_capacity(subjects.len());
         file.statics("/", &[&ViewCoordinates::RIGHT_HAND_Y_UP()])?;
-        let info = RecordingInfo::new().with_name(heading.title.as_str());
+        let info = RecordingInfo::new().with_name(heading.name());
         file.statics("/__properties", &[&info])?;
+        if let Some(provenance) = &heading.provenance {
+            provenance.write(file)?;
+        }
         let notes = TextDocument::from_markdown(layout::notes(&setting));
         file.statics("/notes", &[&notes])?;
         let legend = TextDocument::from_markdown(layout::legend(&setting));
         file.statics("/legend", &[&legend])?;
         if let Some(cost) = &heading.price {
-            price::write(&mut file, cost)?;
+            price::write(file, cost)?;
         }
         let sources = sources::all_names(subjects);
         for (k, subject) in subjects.iter().enumerate() {
             let mut body = BodyRecorder::new(subject, k, heading);
             body.sources = Sources::of(subject, &sources, &heading.scales);
-            body.statics(&mut file, k, heading)?;
+            body.statics(file, k, heading)?;
             bodies.push(body);
         }
         let impulses = heading.streams.contains("force");
@@ -111,8 +209,8 @@ impl Recorder {
             impulses.then(|| Impulses::new(&heading.scales, heading.impulse_shown_for()));
         let share = (BUFFERED_ROWS / subjects.len().max(1)).max(8);
         Ok(Self {
-            path: path.to_owned(),
-            file,
+            hash_times: Times::default(),
+            hashes: Vec::new(),
             bodies,
             state_rows: share.min(STATE_ROWS),
             derived_rows: share.min(DERIVED_ROWS),
@@ -120,18 +218,20 @@ impl Recorder {
         })
     }
 
-    /// Writes what is buffered and closes the file.
-    pub fn finish(mut self) -> Result<Summary, RecordError> {
+    fn flush(&mut self, file: &mut RrdFile) -> Result<(), RecordError> {
         for body in &mut self.bodies {
-            body.flush_state(&mut self.file)?;
-            body.flush_derived(&mut self.file)?;
+            body.flush_state(file)?;
+            body.flush_derived(file)?;
         }
-        let (bytes, rows) = self.file.finish()?;
-        Ok(Summary {
-            path: self.path,
-            bytes,
-            rows,
-        })
+        self.flush_hashes(file)
+    }
+
+    fn flush_hashes(&mut self, file: &mut RrdFile) -> Result<(), RecordError> {
+        let times = std::mem::take(&mut self.hash_times);
+        let hashes = std::mem::take(&mut self.hashes);
+        let ends = Ends::uniform(hashes.len(), 1);
+        let column = counts(ComponentDescriptor::partial("state"), hashes, ends);
+        file.columns(HASHES, &times, vec![column])
     }
 }
 
@@ -140,9 +240,10 @@ impl Sink for Recorder {
         let width = track.bodies.len();
         for (k, &at) in track.instants.iter().enumerate() {
             let motions = &track.motions[k * width..(k + 1) * width];
-            for (body, motion) in self.bodies[track.bodies.clone()].iter_mut().zip(motions) {
+            let bodies = self.trace.bodies[track.bodies.clone()].iter_mut();
+            for (body, motion) in bodies.zip(motions) {
                 body.motion(at, motion);
-                if body.state_times.len() >= self.state_rows {
+                if body.state_times.len() >= self.trace.state_rows {
                     body.flush_state(&mut self.file)?;
                 }
             }
@@ -156,12 +257,12 @@ impl Sink for Recorder {
         bodies: Range<usize>,
         samples: &[Sample],
     ) -> Result<(), SinkError> {
-        if let Some(impulses) = &mut self.impulses {
+        if let Some(impulses) = &mut self.trace.impulses {
             impulses.clear(&mut self.file, at, || timepoint(at))?;
         }
-        for (body, sample) in self.bodies[bodies].iter_mut().zip(samples) {
+        for (body, sample) in self.trace.bodies[bodies].iter_mut().zip(samples) {
             body.sample(at, sample);
-            if body.times.len() >= self.derived_rows {
+            if body.times.len() >= self.trace.derived_rows {
                 body.flush_derived(&mut self.file)?;
             }
         }
@@ -178,9 +279,9 @@ impl Sink for Recorder {
             .with_level(level)
             .with_color(Color::from(colour));
         let when = timepoint(at);
-        let subject = note.body.map(|body| &self.bodies[body].subject);
+        let subject = note.body.map(|body| &self.trace.bodies[body].subject);
         if let (Some(impulses), Some(strike), Some(subject)) =
-            (&mut self.impulses, note.strike, subject)
+            (&mut self.trace.impulses, note.strike, subject)
         {
             impulses.strike(&mut self.file, (at, when.clone()), subject, strike)?;
         }
@@ -200,6 +301,19 @@ impl Sink for Recorder {
             (_, Some(subject)) => format!("/events/{}", subject.name),
         };
         self.file.row(Store::Recording, lane, when, &[&state])?;
+        Ok(())
+    }
+
+    fn wants_fingerprints(&self) -> bool {
+        true
+    }
+
+    fn fingerprint(&mut self, at: Instant, hash: u64) -> Result<(), SinkError> {
+        self.trace.hash_times.push(at);
+        self.trace.hashes.push(hash);
+        if self.trace.hashes.len() >= STATE_ROWS {
+            self.trace.flush_hashes(&mut self.file)?;
+        }
         Ok(())
     }
 }

@@ -4,6 +4,7 @@
 //! chunks are numbered in order, so that two runs of a scene give the same data.
 
 use super::columns::{Column, Times};
+use super::compare::{Comparison, Verdict};
 use super::{MAGIC, RecordError};
 use rerun::external::re_log_encoding::{CrateVersion, Encoder, EncodingOptions};
 use rerun::external::re_log_types::{
@@ -29,6 +30,8 @@ pub struct RrdFile {
     blueprint: StoreId,
     next: u64,
     rows: u64,
+    /// What the recording is held against.
+    comparison: Option<Comparison>,
 }
 
 /// Which of a file's two stores a chunk belongs to.
@@ -83,6 +86,7 @@ impl RrdFile {
             blueprint: StoreId::new(StoreKind::Blueprint, APPLICATION, blueprint_id),
             next: 1,
             rows: 0,
+            comparison: None,
         };
         file.open(Store::Blueprint)?;
         Ok(file)
@@ -98,6 +102,35 @@ impl RrdFile {
             },
         ))?;
         self.open(Store::Recording)
+    }
+
+    /// Begins another recording, under the same blueprint.
+    pub fn next_recording(&mut self, recording_id: &str) -> Result<(), RecordError> {
+        self.recording = StoreId::new(StoreKind::Recording, APPLICATION, recording_id);
+        self.open(Store::Recording)
+    }
+
+    /// Holds the recordings against others from here on.
+    pub fn compare_with(&mut self, comparison: Comparison) {
+        self.comparison = Some(comparison);
+    }
+
+    /// What that came to, of the recording that ends here.
+    pub fn verdict(&mut self) -> Option<Verdict> {
+        self.comparison.as_mut().map(Comparison::end)
+    }
+
+    /// Writes what is not part of what is compared.
+    pub fn remark(
+        &mut self,
+        path: impl Into<EntityPath>,
+        at: TimePoint,
+        part: &dyn AsComponents,
+    ) -> Result<(), RecordError> {
+        let comparison = self.comparison.take();
+        let done = self.row(Store::Recording, path, at, &[part]);
+        self.comparison = comparison;
+        done
     }
 
     /// Writes what does not change with time.
@@ -189,6 +222,9 @@ impl RrdFile {
         let fail = |error: &dyn std::fmt::Display| self.stopped(error);
         let chunk = chunk.map_err(|error| fail(&error))?;
         let message = chunk.to_arrow_msg().map_err(|error| fail(&error))?;
+        if let (Some(comparison), Store::Recording) = (&mut self.comparison, store) {
+            comparison.take(&chunk);
+        }
         self.append(&LogMsg::ArrowMsg(self.id(store), message))
     }
 

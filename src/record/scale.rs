@@ -34,6 +34,16 @@ impl Scales {
         }
     }
 
+    /// Those at which what either is for is drawn no longer than it should be.
+    pub fn smaller(self, other: Self) -> Self {
+        let pairs = self.factors.iter().zip(&other.factors);
+        Self {
+            factors: pairs.map(|(a, b)| a.min(*b)).collect(),
+            impulse: self.impulse.min(other.impulse),
+            size: self.size.max(other.size),
+        }
+    }
+
     /// Metres per unit.
     pub fn of(&self, drawn: &Drawn) -> f64 {
         self.of_stream(drawn.stream)

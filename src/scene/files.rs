@@ -35,7 +35,7 @@ impl Enclosure {
 }
 
 /// Where the files that a scene names are found.
-pub trait Library {
+pub trait Library: std::fmt::Debug + Send + Sync {
     /// The bytes of a file by the name that the scene has for it, no more than `most` and one.
     fn read(&self, name: &str, most: u64) -> io::Result<Vec<u8>>;
 
@@ -43,17 +43,8 @@ pub trait Library {
     fn place(&self) -> String;
 }
 
-impl<L: Library + ?Sized> Library for &L {
-    fn read(&self, name: &str, most: u64) -> io::Result<Vec<u8>> {
-        (**self).read(name, most)
-    }
-
-    fn place(&self) -> String {
-        (**self).place()
-    }
-}
-
 /// The folder of the scene's file, from which paths count.
+#[derive(Clone, Debug)]
 pub struct Folder(pub PathBuf);
 
 impl Library for Folder {
@@ -79,7 +70,7 @@ impl Library for Folder {
 }
 
 /// What was kept of an earlier reading; nothing, for a scene that is text alone.
-impl Library for [Enclosure] {
+impl Library for Vec<Enclosure> {
     fn read(&self, name: &str, _: u64) -> io::Result<Vec<u8>> {
         let found = self.iter().find(|enclosure| enclosure.name == name);
         let found = found.ok_or_else(|| io::Error::from(io::ErrorKind::NotFound))?;

@@ -4,6 +4,7 @@
 //! checks again. Units are SI and radians; degrees exist only in the file.
 
 mod body;
+mod edit;
 mod effect;
 mod event;
 mod files;
@@ -14,6 +15,7 @@ mod parts;
 pub mod pick;
 mod problem;
 mod read;
+mod script;
 mod swarm;
 mod table;
 
@@ -23,11 +25,13 @@ pub(crate) use effect::lasting;
 pub use event::{Action, Change, Click, Event, Framed, Target};
 pub use files::{Enclosure, Folder, Library};
 pub use problem::Problems;
+pub use script::Script;
 
 use crate::integrator::Method;
 use crate::trace::StreamSet;
 use std::io::Read as _;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A scripted run.
 #[derive(Clone)]
@@ -38,8 +42,12 @@ pub struct Scene {
     pub title: String,
     /// The comment that opens the file, as Markdown: what to look at.
     pub notes: String,
-    /// Of the file's text and of the files it names: the same for the same scene.
+    /// The text that it was read from, values put in by arguments or by a sweep included.
+    pub text: Arc<str>,
+    /// Of that text and of the files it names: the same for the same scene.
     pub fingerprint: u64,
+    /// The values that tell it from the others of its sweep: `damping = 0.1`.
+    pub variant: Option<String>,
     /// The files it names, as they were read: with its text, all there is to it.
     pub enclosures: Vec<Enclosure>,
     /// s.
@@ -121,18 +129,7 @@ pub enum SceneError {
 impl Scene {
     /// Reads and checks a scene file.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let file = path.display().to_string();
-        let source = read_to_string(path).map_err(|error| SceneError::Unreadable {
-            why: error.to_string(),
-            remedy: remedy_for(path, &error),
-            file: file.clone(),
-        })?;
-        let name = path.file_stem().map_or_else(
-            || "scene".to_owned(),
-            |stem| stem.to_string_lossy().into_owned(),
-        );
-        let folder = Folder(path.parent().map(Path::to_owned).unwrap_or_default());
-        Ok(Self::parse_with(&file, &name, &source, &folder)?)
+        Ok(Script::load(path)?.scene()?)
     }
 
     /// Why the scene's method does not take the torques it has; a scene that was parsed has no such
@@ -143,19 +140,34 @@ impl Scene {
 
     /// Checks the text of a scene that names no other files; `file` is how messages call it.
     pub fn parse(file: &str, name: &str, source: &str) -> Result<Self, Problems> {
-        Self::parse_with(file, name, source, &[][..])
+        Script::new(file, name, source).scene()
     }
 
     /// Checks the text of a scene; the files that it names (meshes, robots) come from a library: a
     /// [`Folder`], or the [`Enclosure`]s of an earlier reading.
-    pub fn parse_with<L: Library + ?Sized>(
+    pub fn parse_with(
         file: &str,
         name: &str,
         source: &str,
-        library: &L,
+        library: impl Library + 'static,
     ) -> Result<Self, Problems> {
-        read::scene(file, name, source, &library)
+        Script::new(file, name, source).with_files(library).scene()
     }
+}
+
+/// What messages call a file, the name of its scene, and its text.
+fn text_of(path: &Path) -> Result<(String, String, String), SceneError> {
+    let file = path.display().to_string();
+    let source = read_to_string(path).map_err(|error| SceneError::Unreadable {
+        why: error.to_string(),
+        remedy: remedy_for(path, &error),
+        file: file.clone(),
+    })?;
+    let name = path.file_stem().map_or_else(
+        || "scene".to_owned(),
+        |stem| stem.to_string_lossy().into_owned(),
+    );
+    Ok((file, name, source))
 }
 
 /// A scene's bytes at most: 10,000 bodies take two million.

@@ -3,11 +3,22 @@
 use std::fmt;
 use std::ops::Range;
 
-/// One thing wrong, at a byte offset of the source.
+/// One thing wrong.
 #[derive(Clone, Debug, PartialEq)]
 struct Problem {
-    offset: usize,
+    place: Place,
+    /// Where what it is about ends, if it is in the source.
+    end: usize,
     message: String,
+}
+
+/// Where a problem is.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Place {
+    /// In an argument, as it was written.
+    Argument(String),
+    /// At a byte offset of the source.
+    File(usize),
 }
 
 /// Everything wrong with one scene; printed one line each, in the order of the file.
@@ -35,18 +46,54 @@ impl Problems {
 
     /// Notes a problem at a place of the source. The message is one line.
     pub(super) fn add(&mut self, span: &Range<usize>, message: impl Into<String>) {
+        self.add_to(Place::File(span.start), span.end, message);
+    }
+
+    /// The same at a place that may be outside the source.
+    pub(super) fn add_at(&mut self, place: Place, message: impl Into<String>) {
+        self.add_to(place, 0, message);
+    }
+
+    fn add_to(&mut self, place: Place, end: usize, message: impl Into<String>) {
         let problem = Problem {
-            offset: span.start.min(self.source.len()),
+            end,
+            place: match place {
+                Place::File(offset) => Place::File(offset.min(self.source.len())),
+                argument => argument,
+            },
             // One line, whatever the file or its keys hold.
             message: message.into().replace(char::is_control, " "),
         };
-        if self.list.contains(&problem) {
+        let same =
+            |other: &Problem| (&other.place, &other.message) == (&problem.place, &problem.message);
+        if self.list.iter().any(same) {
             return;
         }
         match self.list.len() < MOST {
             true => self.list.push(problem),
             false => self.more += 1,
         }
+    }
+
+    /// Adds the problems of a text that was made from this source; `place` says where its bytes came
+    /// from.
+    pub(super) fn take_from(&mut self, other: Self, place: impl Fn(Range<usize>) -> Place) {
+        for problem in other.list {
+            let place = match problem.place {
+                Place::File(start) => place(start..problem.end),
+                argument => argument,
+            };
+            self.add_at(place, problem.message);
+        }
+        self.more += other.more;
+    }
+
+    /// Adds the problems of the same source that are not there yet.
+    pub(super) fn merge(&mut self, other: Self) {
+        for problem in other.list {
+            self.add_at(problem.place, problem.message);
+        }
+        self.more += other.more;
     }
 
     /// The text at a place, on one line and not too long to read.
@@ -86,13 +133,19 @@ impl Problems {
 impl fmt::Display for Problems {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut sorted: Vec<&Problem> = self.list.iter().collect();
-        sorted.sort_by_key(|problem| problem.offset);
+        sorted.sort_by_key(|problem| &problem.place);
         for (k, problem) in sorted.into_iter().enumerate() {
-            let (line, column) = self.position(problem.offset);
             if k > 0 {
                 writeln!(f)?;
             }
-            write!(f, "{}:{line}:{column}: {}", self.file, problem.message)?;
+            match &problem.place {
+                Place::Argument(argument) => write!(f, "{argument}: ")?,
+                Place::File(offset) => {
+                    let (line, column) = self.position(*offset);
+                    write!(f, "{}:{line}:{column}: ", self.file)?;
+                }
+            }
+            write!(f, "{}", problem.message)?;
         }
         if self.more > 0 {
             write!(f, "\n{}: and {} problems more", self.file, self.more)?;

@@ -32,8 +32,6 @@ pub(super) fn scene(
     source: &str,
     library: &dyn Library,
 ) -> Result<Scene, Problems> {
-    // Some editors open a file with a mark of its encoding.
-    let source = source.strip_prefix('\u{feff}').unwrap_or(source);
     let mut problems = Problems::new(file, source);
     let (document, errors) = DeTable::parse_recoverable(source);
     // After the first faults a parser guesses.
@@ -116,11 +114,15 @@ fn read(
         clock: event::Clock { duration, step },
     };
     let events = event::read_all(&events, &context, problems);
+    // What it says is looked at where its values are put in.
+    top.get("sweep");
     let scene = Scene {
         name: name.to_owned(),
         title: title.replace(char::is_control, " "),
         notes: opening_comment(source),
+        text: source.into(),
         fingerprint: fingerprint(source.as_bytes()),
+        variant: None,
         enclosures: Vec::new(),
         duration: duration?,
         stepping: stepping?,

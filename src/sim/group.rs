@@ -372,6 +372,21 @@ impl Group {
         }
     }
 
+    /// Mixes the states into a hash.
+    pub fn hash_into(&self, hash: u64) -> u64 {
+        self.hash_of(&self.state, hash)
+    }
+
+    /// The same of the `k`-th state kept of the last stretch.
+    pub fn hash_kept_into(&self, k: usize, hash: u64) -> u64 {
+        self.hash_of(&self.kept[k], hash)
+    }
+
+    fn hash_of(&self, block: &StateBlock, hash: u64) -> u64 {
+        let states = (0..self.members.len()).map(|lane| block.get(lane));
+        states.fold(hash, |hash, state| state.hash_into(hash))
+    }
+
     /// The states as poses of the bodies' own axes and centres of mass.
     pub fn motions(&self) -> impl Iterator<Item = Motion> + '_ {
         self.poses(&self.state)

@@ -50,6 +50,9 @@ pub struct Simulation<'s> {
 /// Steps of a block from which on a thread is worth its start (some 40 µs): about ten times that.
 const WORTH_A_THREAD: usize = 8192;
 
+/// Anything but 0, which an all-zero state would not move.
+const HASH_START: u64 = 0xcbf2_9ce4_8422_2325;
+
 /// What a run leaves besides its trace.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
@@ -272,6 +275,7 @@ impl<'s> Simulation<'s> {
         let mut samples = self.samples(start.time);
         self.judge(0, &mut samples, start.time);
         sink.samples(start, 0..samples.len(), &samples)?;
+        self.deliver_fingerprint(start, sink)?;
         loop {
             let first = schedule.now();
             let Some(stretch) = schedule.next_stretch() else {
@@ -305,6 +309,7 @@ impl<'s> Simulation<'s> {
                 }
                 self.deliver_bodies(now, &touched, sink)?;
                 self.must_be_finite(now, &touched, sink)?;
+                self.deliver_fingerprint(now, sink)?;
                 self.set_out(&touched, schedule, chooser);
             }
         }
@@ -413,6 +418,10 @@ impl<'s> Simulation<'s> {
                     .collect();
                 self.judge(0, &mut samples, kept.at.time);
                 sink.samples(kept.at, 0..self.subjects.len(), &samples)?;
+                if sink.wants_fingerprints() {
+                    let mix = |hash, group: &Group| group.hash_kept_into(k, hash);
+                    sink.fingerprint(kept.at, self.groups.iter().fold(HASH_START, mix))?;
+                }
             }
         }
         Ok(())
@@ -748,6 +757,15 @@ impl<'s> Simulation<'s> {
             .iter()
             .flat_map(|group| group.samples(t))
             .collect()
+    }
+
+    /// Delivers the hash of all states as they are now.
+    fn deliver_fingerprint(&self, now: Instant, sink: &mut dyn Sink) -> Result<(), SinkError> {
+        if !sink.wants_fingerprints() {
+            return Ok(());
+        }
+        let mix = |hash, group: &Group| group.hash_into(hash);
+        sink.fingerprint(now, self.groups.iter().fold(HASH_START, mix))
     }
 
     /// Delivers the poses of all bodies at one instant.
