@@ -191,3 +191,179 @@ fn half_period(i: [f64; 3], w: [f64; 3]) -> f64 {
     }
     std::f64::consts::PI / a / lambda
 }
+
+#[test]
+fn the_wing_nut_flips_when_jacobi_says() {
+    let (subjects, _, memory) = run(&load("wing_nut.toml"));
+    let samples = of(&subjects, &memory, "wing-nut");
+    let along = |s: &Sample| (s.motion.q_wb.inverse() * s.motion.omega_w).y;
+    let flips = crossings(&samples.map(|(t, s)| (t, along(s))).collect::<Vec<_>>());
+    let half = half_period([1.0, 2.0, 3.0], [0.01, 10.0, 0.01]);
+    assert!((half - 2.753).abs() < 5e-4, "the text says 2.753: {half}");
+    assert!(flips.len() >= 6, "{flips:?}");
+    for pair in flips.windows(2) {
+        // Straight lines between 60 samples a second, where ω changes by some 10 rad/s in 0.3 s.
+        assert!((pair[1] - pair[0] - half).abs() < 2e-3, "{flips:?}");
+    }
+}
+
+#[test]
+fn five_engines_drift_apart_from_the_truth_each_in_its_way() {
+    let (subjects, outcome, memory) = run(&load("five_engines.toml"));
+    let index = |name: &str| subjects.iter().position(|s| s.name == name).unwrap();
+    let flips = |name: &str| {
+        let samples = of(&subjects, &memory, name);
+        let along = |s: &Sample| (s.motion.q_wb.inverse() * s.motion.omega_w).y;
+        crossings(&samples.map(|(t, s)| (t, along(s))).collect::<Vec<_>>())
+    };
+    let energy = |name: &str| {
+        let k = index(name);
+        let start = subjects[k].energy(&memory.samples[k].2.motion);
+        subjects[k].energy(&outcome.end[k].motion) / start
+    };
+    let half = half_period([1.0, 2.0, 3.0], [0.01, 10.0, 0.01]);
+    let truly = flips("true");
+    assert!((truly[1] - truly[0] - half).abs() < 2e-3, "{truly:?}");
+    let later = |name: &str| {
+        let flips = flips(name);
+        let between: Vec<f64> = flips.windows(2).map(|w| w[1] - w[0]).collect();
+        assert!(between.len() > 2, "{name}: {flips:?}");
+        assert!(between[0] > 1.02 * half, "{name}: {between:?}");
+        assert!(
+            between.windows(2).all(|w| w[1] > w[0]),
+            "{name}: {between:?}"
+        );
+    };
+    later("jolt");
+    later("rapier");
+    assert!(energy("bullet") < 0.7, "{}", energy("bullet"));
+    assert!(energy("tutorial") > 2.0, "{}", energy("tutorial"));
+    let angle = |name: &str| {
+        let end = |name: &str| outcome.end[index(name)].motion.q_wb;
+        end(name).angle_to(&end("true"))
+    };
+    assert!(angle("mujoco") < 0.1, "{}", angle("mujoco"));
+    assert!(angle("jolt") > 0.5 || angle("rapier") > 0.5);
+}
+
+#[test]
+fn gravity_holds_one_satellite_swings_another_and_tips_the_third() {
+    let (subjects, _, memory) = run(&load("satellite.toml"));
+    // The angle between the long axis and the local vertical, in the plane of the orbit.
+    let off = |name: &str| -> Vec<(f64, f64)> {
+        let samples = of(&subjects, &memory, name);
+        let angle = |s: &Sample| {
+            let axis_w = s.motion.q_wb * Vector3::y();
+            let up_w = s.motion.position_w.normalize();
+            up_w.cross(&axis_w).z.atan2(up_w.dot(&axis_w))
+        };
+        samples.map(|(t, s)| (t, angle(s))).collect()
+    };
+    // A tolerance of 1e-11 a step, some thousand steps; the start has 15 digits.
+    let upright = off("upright");
+    assert!(upright.iter().all(|(_, a)| a.sin().abs() < 1e-7));
+    // θ'' = -3/2 Ω² k sin 2θ, k = (I_roll - I_yaw)/I_pitch: a pendulum of 2θ, its quarter period by the
+    // arithmetic-geometric mean.
+    let (roll, yaw, pitch) = (1.44 + 0.04, 0.25 + 0.04, 0.25 + 1.44);
+    let omega = (3.0_f64 * (roll - yaw) / pitch).sqrt();
+    let (mut a, mut b) = (1.0, 25_f64.to_radians().cos());
+    for _ in 0..8 {
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+    }
+    let half = std::f64::consts::PI / omega / a;
+    let half = half / 1.002_526_106_268_56;
+    assert!(
+        (2.0 * half - 4.5).abs() < 0.05,
+        "the text says 4.5: {}",
+        2.0 * half
+    );
+    let swing: Vec<(f64, f64)> = off("librating")
+        .into_iter()
+        .map(|(t, a)| (t, a.sin()))
+        .collect();
+    let through = crossings(&swing);
+    assert!(through.len() >= 7, "{through:?}");
+    for pair in through.windows(2) {
+        // The swing pulls the orbit out of round by half a percent, e = 3/2 (tr I - 3 I_r)/m r² or so, and the
+        // orbit swings the body by 2 e/(ω² - 1), 0.01 rad: 1 % of a half period at most, and what e adds.
+        let off = pair[1] - pair[0] - half;
+        assert!(off.abs() < 0.015 * half, "{through:?} {half}");
+    }
+    let lying = off("lying");
+    assert!(
+        lying.iter().any(|(_, a)| a.cos().abs() > 0.9),
+        "it tips over"
+    );
+}
+
+#[test]
+fn the_wheels_stop_the_tumbling_within_their_limit() {
+    let (subjects, outcome, memory) = run(&load("detumble.toml"));
+    let wheels = subjects[0]
+        .sources
+        .iter()
+        .position(|name| name == "wheels")
+        .unwrap();
+    let momentum = |s: &Sample| subjects[0].momentum_w(&s.motion);
+    let start = momentum(&memory.samples[0].2);
+    let mut at_limit = 0;
+    for (t, sample) in of(&subjects, &memory, "satellite") {
+        let torque = sample.sources[wheels].norm();
+        assert!(torque <= 0.4 * (1.0 + 1e-12), "{t}: {torque}");
+        if t < 3.0 {
+            // Free: by a tolerance of 1e-10 a step.
+            assert!((momentum(sample) - start).norm() < 1e-8 * start.norm());
+        }
+        at_limit += usize::from(torque > 0.4 * (1.0 - 1e-9));
+    }
+    assert!(at_limit > 30, "{at_limit}");
+    let end = &outcome.end[0].motion;
+    assert!(
+        end.omega_w.norm() < 0.02 && end.q_wb.angle() < 0.02,
+        "{end:?}"
+    );
+}
+
+#[test]
+fn every_click_of_an_eye_gives_the_same_momentum() {
+    let scene = load("click_storm.toml");
+    let (subjects, outcome, _) = run(&scene);
+    let mass = subjects[0].mass.unwrap();
+    let total: Vector3<f64> = outcome.end.iter().map(|s| s.motion.velocity_w * mass).sum();
+    let ray = |name: &str| match name {
+        "from-the-front" => Vector3::new(0.0, 0.0, -1.0),
+        "from-the-right" => Vector3::new(-6.0, 0.0, -0.9).normalize(),
+        _ => Vector3::new(0.0, 6.0, -1.95).normalize(),
+    };
+    let struck = outcome.blows.iter().map(|blow| {
+        let name = scene.events[blow.event].name.as_deref().unwrap_or_default();
+        ray(name) * 0.4
+    });
+    let given: Vector3<f64> = struck.sum();
+    // Some tens of additions of numbers up to 10.
+    assert!((total - given).norm() < 1e-12, "{total:?} {given:?}");
+    let met: std::collections::BTreeSet<usize> = outcome.blows.iter().map(|b| b.body).collect();
+    assert!(met.len() >= 4, "clicks met {met:?}");
+    // Others went by, once what they would have met was gone.
+    assert!(outcome.blows.len() < scene.events.len());
+}
+
+#[test]
+fn each_of_ten_thousand_keeps_its_momentum_and_energy() {
+    let scene = load("swarm.toml");
+    let (subjects, outcome, memory) = run(&scene);
+    assert_eq!(subjects.len(), 10_000);
+    assert!(memory.samples.is_empty(), "of a swarm nothing is derived");
+    for (subject, sample) in subjects.iter().zip(&outcome.end) {
+        let momentum = |motion| subject.momentum_w(motion);
+        let (l0, l1) = (momentum(&subject.start), momentum(&sample.motion));
+        // Rotations in sequence keep L to rounding, 300 steps of a few; the energy to second order in
+        // ω h = 0.04 at most, without drift.
+        assert!((l1 - l0).norm() < 1e-12 * l0.norm(), "{}", subject.name);
+        let (e0, e1) = (
+            subject.energy(&subject.start),
+            subject.energy(&sample.motion),
+        );
+        assert!((e1 - e0).abs() < 2e-3 * e0, "{}: {e0} {e1}", subject.name);
+    }
+}

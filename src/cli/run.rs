@@ -8,6 +8,7 @@ use crate::scene::{Event, Scene, SceneError, Script, Stepping};
 use crate::sim::{Blow, Outcome, SimError, Simulation};
 use crate::trace::{Sample, Subject, short, short_numbers, short_vector};
 use serde::Serialize;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Simulate a scene and record it.
@@ -406,11 +407,21 @@ fn tables(scene: &Scene, subjects: &[Subject], outcome: &Outcome, whole: bool) -
         "angular velocity ω (rad/s)",
         "kinetic energy (J)",
     ];
-    let rows = subjects
-        .iter()
-        .zip(&outcome.end)
-        .map(|(s, m)| end_row(s, m))
-        .collect();
+    let alone = subjects.partition_point(|subject| subject.swarm.is_none());
+    let ends = subjects.iter().zip(&outcome.end).take(alone);
+    let mut rows: Vec<Vec<String>> = ends.map(|(s, m)| end_row(s, m)).collect();
+    for swarm in &scene.swarms {
+        let of = |all: &Range<usize>| subjects[all.clone()].iter().zip(&outcome.end[all.clone()]);
+        let energy = of(&swarm.members).map(|(subject, sample)| subject.energy(&sample.motion));
+        rows.push(vec![
+            format!("{} ({} bodies)", swarm.name, swarm.members.len()),
+            String::new(),
+            String::new(),
+            String::new(),
+            String::new(),
+            format!("{} in all", short(energy.sum::<f64>())),
+        ]);
+    }
     text += &print::table(&header, rows);
     text
 }

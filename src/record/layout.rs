@@ -27,7 +27,22 @@ use rerun::external::re_sdk_types::{VisualizableArchetype as _, Visualizer, comp
 /// What the arrangement depends on.
 pub struct Setting<'a> {
     pub heading: &'a Heading,
+    /// Those that are in no swarm.
     pub subjects: &'a [Subject],
+    /// The others.
+    pub swarms: &'a [Subject],
+}
+
+impl<'a> Setting<'a> {
+    pub fn new(heading: &'a Heading, subjects: &'a [Subject]) -> Self {
+        let alone = subjects.partition_point(|subject| subject.swarm.is_none());
+        let (subjects, swarms) = subjects.split_at(alone);
+        Self {
+            heading,
+            subjects,
+            swarms,
+        }
+    }
 }
 
 /// Bodies that get a tab and a page of their own, and lines in the plots of all bodies: as many
@@ -243,7 +258,8 @@ fn panels(blueprint: &mut Blueprint<'_>, heading: &Heading) -> Result<(), Record
 fn overview(blueprint: &mut Blueprint<'_>, setting: &Setting<'_>) -> Result<Part, RecordError> {
     let all: Vec<&Subject> = setting.subjects.iter().collect();
     let contents = pictured().map(|q| format!("+ /{q}/**")).collect();
-    let picture = spatial(blueprint, setting, "all bodies", contents, &all)?;
+    let seen: Vec<&Subject> = setting.subjects.iter().chain(setting.swarms).collect();
+    let picture = spatial(blueprint, setting, "all bodies", contents, &seen)?;
     let events = text_log(blueprint)?;
     let pushes = state_timeline(blueprint)?;
     let log = blueprint.container(ContainerKind::Tabs, "events", &[events, pushes], &[])?;
@@ -284,7 +300,10 @@ fn overview(blueprint: &mut Blueprint<'_>, setting: &Setting<'_>) -> Result<Part
         &[1.0, 1.0][..pages.len()],
     )?);
     shares.push(2.4);
-    let plots = magnitude_plots(blueprint, setting)?;
+    let plots = match setting.subjects.is_empty() {
+        true => Vec::new(),
+        false => magnitude_plots(blueprint, setting)?,
+    };
     if let Some(plots) = tabbed(blueprint, &plots)? {
         columns.push(plots);
         shares.push(2.4);
@@ -325,7 +344,7 @@ fn body_tab(
 }
 
 /// What the picture holds besides the arrows.
-const SPATIAL: [&str; 5] = ["bodies", "labels", "pivots", "inertia", "sources"];
+const SPATIAL: [&str; 6] = ["bodies", "swarms", "labels", "pivots", "inertia", "sources"];
 
 /// Everything the picture holds, by quantity.
 fn pictured() -> impl Iterator<Item = &'static str> {

@@ -22,6 +22,7 @@ mod recorder;
 mod rrd;
 mod scale;
 mod sources;
+mod swarm;
 mod viewer;
 
 pub use compare::{Comparison, Difference, Verdict};

@@ -12,6 +12,7 @@ use super::picture::{Impulses, Picture, pictures};
 use super::price;
 use super::rrd::{RrdFile, Store};
 use super::sources::{self, Sources};
+use super::swarm::SwarmRecorder;
 use crate::trace::{
     Instant, Motion, Note, NoteKind, Quantity, STREAMS, Sample, Sink, SinkError, Subject, Track,
 };
@@ -53,6 +54,7 @@ struct Trace {
     hash_times: Times,
     hashes: Vec<u64>,
     bodies: Vec<BodyRecorder>,
+    swarms: Vec<SwarmRecorder>,
     state_rows: usize,
     derived_rows: usize,
     /// Where forces are recorded.
@@ -121,7 +123,7 @@ impl Recorder {
         heading: &Heading,
         subjects: &[Subject],
     ) -> Result<Self, RecordError> {
-        layout::write(&mut file, &Setting { heading, subjects })?;
+        layout::write(&mut file, &Setting::new(heading, subjects))?;
         file.begin_recording()?;
         Ok(Self {
             path: path.to_owned(),
@@ -182,8 +184,8 @@ impl Trace {
         heading: &Heading,
         subjects: &[Subject],
     ) -> Result<Self, RecordError> {
-        let setting = Setting { heading, subjects };
-        let mut bodies = Vec::with_capacity(subjects.len());
+        let setting = Setting::new(heading, subjects);
+        let mut bodies = Vec::with_capacity(setting.subjects.len());
         file.statics("/", &[&ViewCoordinates::RIGHT_HAND_Y_UP()])?;
         let info = RecordingInfo::new().with_name(heading.name());
         file.statics("/__properties", &[&info])?;
@@ -197,21 +199,28 @@ impl Trace {
         if let Some(cost) = &heading.price {
             price::write(file, cost)?;
         }
-        let sources = sources::all_names(subjects);
-        for (k, subject) in subjects.iter().enumerate() {
+        let sources = sources::all_names(setting.subjects);
+        for (k, subject) in setting.subjects.iter().enumerate() {
             let mut body = BodyRecorder::new(subject, k, heading);
             body.sources = Sources::of(subject, &sources, &heading.scales);
             body.statics(file, k, heading)?;
             bodies.push(body);
         }
+        let mut first = bodies.len();
+        let mut swarms = Vec::new();
+        for members in setting.swarms.chunk_by(|a, b| a.swarm == b.swarm) {
+            swarms.push(SwarmRecorder::begin(file, members, first, swarms.len())?);
+            first += members.len();
+        }
         let impulses = heading.streams.contains("force");
         let impulses =
             impulses.then(|| Impulses::new(&heading.scales, heading.impulse_shown_for()));
-        let share = (BUFFERED_ROWS / subjects.len().max(1)).max(8);
+        let share = (BUFFERED_ROWS / bodies.len().max(1)).max(8);
         Ok(Self {
             hash_times: Times::default(),
             hashes: Vec::new(),
             bodies,
+            swarms,
             state_rows: share.min(STATE_ROWS),
             derived_rows: share.min(DERIVED_ROWS),
             impulses,
@@ -222,6 +231,9 @@ impl Trace {
         for body in &mut self.bodies {
             body.flush_state(file)?;
             body.flush_derived(file)?;
+        }
+        for swarm in &mut self.swarms {
+            swarm.flush(file)?;
         }
         self.flush_hashes(file)
     }
@@ -240,13 +252,18 @@ impl Sink for Recorder {
         let width = track.bodies.len();
         for (k, &at) in track.instants.iter().enumerate() {
             let motions = &track.motions[k * width..(k + 1) * width];
-            let bodies = self.trace.bodies[track.bodies.clone()].iter_mut();
+            let alone = self.trace.bodies.len();
+            let range = track.bodies.start.min(alone)..track.bodies.end.min(alone);
+            let bodies = self.trace.bodies[range].iter_mut();
             for (body, motion) in bodies.zip(motions) {
                 body.motion(at, motion);
                 if body.state_times.len() >= self.trace.state_rows {
                     body.flush_state(&mut self.file)?;
                 }
             }
+        }
+        for swarm in &mut self.trace.swarms {
+            swarm.motions(&mut self.file, track)?;
         }
         Ok(())
     }
@@ -279,7 +296,8 @@ impl Sink for Recorder {
             .with_level(level)
             .with_color(Color::from(colour));
         let when = timepoint(at);
-        let subject = note.body.map(|body| &self.trace.bodies[body].subject);
+        let body = note.body.and_then(|body| self.trace.bodies.get(body));
+        let subject = body.map(|body| &body.subject);
         if let (Some(impulses), Some(strike), Some(subject)) =
             (&mut self.trace.impulses, note.strike, subject)
         {

@@ -82,10 +82,20 @@ pub(super) fn points(solid: Option<&dyn Solid>) -> Vec<NamedPoint> {
     }
 }
 
+/// Bodies that one table makes; they follow all others.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Swarm {
+    pub name: Arc<str>,
+    /// Indices of its bodies.
+    pub members: Range<usize>,
+}
+
 /// The bodies read; events refer to them by name even where one of them is wrong.
 #[derive(Default)]
 pub(super) struct Bodies {
     pub valid: Vec<Option<Body>>,
+    pub swarms: Vec<Swarm>,
     /// Bodies and swarms.
     names: HashMap<String, Named>,
 }
@@ -202,6 +212,11 @@ impl Bodies {
             return;
         };
         let name = std::mem::take(&mut like.name);
+        let first = self.valid.len();
+        self.swarms.push(Swarm {
+            name: name.as_str().into(),
+            members: first..first + bodies,
+        });
         let label = std::mem::take(&mut like.label);
         let labelled = table.has("label");
         self.valid.extend((0..bodies).map(|k| {

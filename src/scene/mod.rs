@@ -19,7 +19,7 @@ mod script;
 mod swarm;
 mod table;
 
-pub use body::{Body, OwnMethod};
+pub use body::{Body, OwnMethod, Swarm};
 pub use effect::SceneEffect;
 pub(crate) use effect::lasting;
 pub use event::{Action, Change, Click, Event, Framed, Target};
@@ -59,6 +59,8 @@ pub struct Scene {
     /// The effects that are called for, those that are off at first too.
     pub effects: Vec<SceneEffect>,
     pub bodies: Vec<Body>,
+    /// Which of the bodies belong together.
+    pub swarms: Vec<Swarm>,
     pub events: Vec<Event>,
 }
 

@@ -129,6 +129,7 @@ fn read(
         step: step?,
         record: record?,
         effects: effects?,
+        swarms: bodies.swarms.clone(),
         bodies: bodies.into_valid()?,
         events,
     };

@@ -78,6 +78,7 @@ pub fn subject(body: &Body) -> Subject {
             omega_w: body.omega_w,
         },
         sources: Vec::new(),
+        swarm: None,
         solid: body.solid.clone(),
     }
 }

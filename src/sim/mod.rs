@@ -25,6 +25,7 @@ use schedule::{Schedule, Stretch};
 use script::{Acting, Applied, Done, Happening, Lasting};
 use std::cell::RefCell;
 use std::ops::Range;
+use std::sync::Arc;
 use truth::Truth;
 
 /// A scene being stepped.
@@ -32,6 +33,8 @@ pub struct Simulation<'s> {
     scene: &'s Scene,
     subjects: Vec<Subject>,
     groups: Vec<Group>,
+    /// Bodies that are in no swarm: the first. Of the others nothing is derived.
+    alone: usize,
     /// By body: the group it is in.
     home: Vec<usize>,
     acting: Acting,
@@ -133,6 +136,10 @@ impl<'s> Simulation<'s> {
         let mut simulation = Self {
             scene,
             subjects: scene.bodies.iter().map(group::subject).collect(),
+            alone: scene
+                .swarms
+                .first()
+                .map_or(scene.bodies.len(), |s| s.members.start),
             home: homes
                 .flat_map(|(k, group)| group.members.clone().map(move |_| k))
                 .collect(),
@@ -145,8 +152,14 @@ impl<'s> Simulation<'s> {
             timed: scene.record.streams.contains("step_time"),
             step_time: None,
         };
+        for swarm in &scene.swarms {
+            for subject in &mut simulation.subjects[swarm.members.clone()] {
+                subject.swarm = Some(Arc::clone(&swarm.name));
+            }
+        }
         if scene.record.streams.contains("sources") {
-            sources::tell_apart(scene, &mut simulation.subjects);
+            let alone = simulation.alone;
+            sources::tell_apart(scene, &mut simulation.subjects[..alone]);
         }
         for group in &mut simulation.groups {
             group.watch(&simulation.subjects[group.members.clone()]);
@@ -272,7 +285,7 @@ impl<'s> Simulation<'s> {
         let all: Vec<usize> = (0..self.subjects.len()).collect();
         self.must_be_finite(start, &all, sink)?;
         self.set_out(&all, schedule, chooser);
-        let mut samples = self.samples(start.time);
+        let mut samples = self.samples_alone(|group| group.samples(start.time));
         self.judge(0, &mut samples, start.time);
         sink.samples(start, 0..samples.len(), &samples)?;
         self.deliver_fingerprint(start, sink)?;
@@ -299,7 +312,7 @@ impl<'s> Simulation<'s> {
                 let applied = self.apply(now, &stretch.happenings, schedule);
                 let touched = self.touched(&applied);
                 for (body, sample) in &before {
-                    if touched.binary_search(body).is_ok() {
+                    if *body < self.alone && touched.binary_search(body).is_ok() {
                         let sample = std::slice::from_ref(sample);
                         sink.samples(now, *body..body + 1, sample)?;
                     }
@@ -412,12 +425,10 @@ impl<'s> Simulation<'s> {
         }
         for (k, kept) in stretch.kept.iter().enumerate() {
             if kept.display {
-                let groups = self.groups.iter();
-                let mut samples: Vec<Sample> = groups
-                    .flat_map(|group| group.samples_kept(k, kept.at.time))
-                    .collect();
-                self.judge(0, &mut samples, kept.at.time);
-                sink.samples(kept.at, 0..self.subjects.len(), &samples)?;
+                let time = kept.at.time;
+                let mut samples = self.samples_alone(|group| group.samples_kept(k, time));
+                self.judge(0, &mut samples, time);
+                sink.samples(kept.at, 0..samples.len(), &samples)?;
                 if sink.wants_fingerprints() {
                     let mix = |hash, group: &Group| group.hash_kept_into(k, hash);
                     sink.fingerprint(kept.at, self.groups.iter().fold(HASH_START, mix))?;
@@ -463,8 +474,9 @@ impl<'s> Simulation<'s> {
             kind: NoteKind::Failure,
             strike: None,
         };
+        let samples = self.samples_alone(|group| group.samples(at.time));
         let written = sink
-            .samples(at, 0..self.subjects.len(), &self.samples(at.time))
+            .samples(at, 0..samples.len(), &samples)
             .and_then(|()| sink.note(at, &note));
         match written {
             Ok(()) => error,
@@ -728,7 +740,7 @@ impl<'s> Simulation<'s> {
         bodies: &[usize],
         sink: &mut dyn Sink,
     ) -> Result<(), SinkError> {
-        for &body in bodies {
+        for &body in bodies.iter().take_while(|body| **body < self.alone) {
             let mut sample = [self.group_of(body).sample(body, now.time)];
             self.judge(body, &mut sample, now.time);
             sink.samples(now, body..body + 1, &sample)?;
@@ -750,6 +762,15 @@ impl<'s> Simulation<'s> {
 
     fn group_of(&self, body: usize) -> &Group {
         &self.groups[self.home[body]]
+    }
+
+    /// Of the bodies that are in no swarm.
+    fn samples_alone(&self, of: impl Fn(&Group) -> Vec<Sample>) -> Vec<Sample> {
+        let groups = self.groups.iter();
+        let groups = groups.take_while(|group| group.members.start < self.alone);
+        let mut samples: Vec<Sample> = groups.flat_map(of).collect();
+        samples.truncate(self.alone);
+        samples
     }
 
     fn samples(&self, t: f64) -> Vec<Sample> {
@@ -791,9 +812,10 @@ fn truths(scene: &Scene) -> Vec<RefCell<Truth>> {
     {
         return Vec::new();
     }
-    let alone = group::groups(scene, 1);
-    alone
-        .into_iter()
+    let each = group::groups(scene, 1);
+    let alone = scene.swarms.first().map_or(each.len(), |s| s.members.start);
+    each.into_iter()
+        .take(alone)
         .map(|body| RefCell::new(Truth::new(body)))
         .collect()
 }

@@ -45,6 +45,8 @@ pub struct Subject {
     pub start: Motion,
     /// What turns it, by name, where that is told apart: [`Sample::sources`] are in this order.
     pub sources: Vec<String>,
+    /// The swarm that it is one of, if any: recorded as one, poses alone. All others come before.
+    pub swarm: Option<Arc<str>>,
     /// What it looks like, where that is known.
     pub solid: Option<Arc<dyn Solid>>,
 }

@@ -54,7 +54,7 @@ pub enum NoteKind {
 pub struct SinkError(pub String);
 
 /// Where a trace goes. Instants of a body arrive in order; two rows of one instant are what was
-/// just before an event and what is just after it.
+/// just before an event and what is just after it. Of a swarm's bodies only the motions come.
 pub trait Sink {
     /// The state, as often as it is wanted.
     fn motions(&mut self, track: &Track<'_>) -> Result<(), SinkError>;
