@@ -367,3 +367,20 @@ fn each_of_ten_thousand_keeps_its_momentum_and_energy() {
         assert!((e1 - e0).abs() < 2e-3 * e0, "{}: {e0} {e1}", subject.name);
     }
 }
+
+#[test]
+fn the_gallery_shows_every_scene() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(root.join("docs/gallery.md")).unwrap();
+    for entry in std::fs::read_dir(root.join("scenes")).unwrap().flatten() {
+        let path = entry.path();
+        if path.extension().is_some_and(|ending| ending == "toml") {
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            let wanted = format!("gallery/{name}.png");
+            assert!(page.contains(&wanted), "{name}: run docs/gallery.py");
+            assert!(root.join("docs").join(wanted).is_file(), "{name}");
+            let title = torquescope::scene::Scene::load(&path).unwrap().title;
+            assert!(page.contains(&title), "{name}: run docs/gallery.py");
+        }
+    }
+}
