@@ -3,7 +3,7 @@
 use super::{Wrong, explain, print, view};
 use crate::cost::{Plan, PlanError};
 use crate::record::{Heading, Recorder, Summary};
-use crate::scene::{Action, Event, Scene, Stepping};
+use crate::scene::{Action, Event, Scene, SceneError, Source, Stepping};
 use crate::sim::{Blow, Outcome, SimError, Simulation};
 use crate::trace::{Sample, Subject, short, short_numbers, short_vector};
 use serde::Serialize;
@@ -11,9 +11,9 @@ use std::path::PathBuf;
 
 /// Simulate a scene and record it.
 #[derive(clap::Args)]
-#[command(after_help = "Example: torquescope run scenes/cone.toml --view")]
+#[command(after_help = "Example: torquescope run @cone --view")]
 pub struct Arguments {
-    /// The scene, a TOML file.
+    /// The scene, a TOML file, or one that the program carries, such as @cone (`torquescope scenes`).
     scene: PathBuf,
     /// Where the recording goes [default: the scene's name with .rrd, in the current folder].
     #[arg(long, value_name = "FILE")]
@@ -36,7 +36,12 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.serve.is_asked_for() && !arguments.view {
         return Err(Wrong("--port and --no-browser say how to view; add --view".to_owned()).into());
     }
-    let scene = Scene::load(&arguments.scene)?;
+    let (scene, warnings) = Source::read(&arguments.scene)?
+        .judge()
+        .map_err(SceneError::from)?;
+    for warning in &warnings {
+        print::err(&warning.line());
+    }
     let path = match &arguments.out {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.rrd", scene.name)),

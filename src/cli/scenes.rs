@@ -1,20 +1,39 @@
 //! `scenes`: what there is to run.
 
 use super::{Wrong, print};
-use crate::scene::Scene;
+use crate::scene::{Scene, carried::CARRIED};
 use std::path::{Path, PathBuf};
 
-/// List the scenes in a folder, with their titles.
+/// List the scenes that the program carries, or those in a folder, with their titles.
+///
+/// A carried scene runs anywhere: torquescope run @cone. `torquescope new my_cone --from @cone` makes a
+/// copy to change.
 #[derive(clap::Args)]
 #[command(after_help = "Example: torquescope scenes")]
 pub struct Arguments {
-    /// The folder.
-    #[arg(default_value = "scenes")]
-    folder: PathBuf,
+    /// A folder of scenes.
+    folder: Option<PathBuf>,
 }
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let folder = &arguments.folder;
+    let rows = match &arguments.folder {
+        Some(folder) => in_folder(folder)?,
+        None => {
+            let row = |(name, text): &(&str, &str)| {
+                let file = format!("@{name}");
+                let title = match Scene::parse(&file, name, text) {
+                    Ok(scene) => scene.title,
+                    Err(_) => wrong(Path::new(&file)),
+                };
+                vec![file, title]
+            };
+            CARRIED.iter().map(row).collect()
+        }
+    };
+    print::out(&print::table(&["scene", "title"], rows))
+}
+
+fn in_folder(folder: &Path) -> anyhow::Result<Vec<Vec<String>>> {
     let entries = std::fs::read_dir(folder).map_err(|error| {
         Wrong(format!(
             "{}: cannot be read: {error}; name a folder of scenes",
@@ -35,16 +54,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         ))
         .into());
     }
-    let rows = paths
-        .iter()
-        .map(|path| vec![path.display().to_string(), title(path)])
-        .collect();
-    print::out(&print::table(&["scene", "title"], rows))
+    let title = |path: &Path| match Scene::load(path) {
+        Ok(scene) => scene.title,
+        Err(_) => wrong(path),
+    };
+    let row = |path: &PathBuf| vec![path.display().to_string(), title(path)];
+    Ok(paths.iter().map(row).collect())
 }
 
-fn title(path: &Path) -> String {
-    match Scene::load(path) {
-        Ok(scene) => scene.title,
-        Err(_) => format!("wrong: see `torquescope check {}`", path.display()),
-    }
+fn wrong(path: &Path) -> String {
+    format!("wrong: see `torquescope check {}`", path.display())
 }

@@ -64,7 +64,10 @@ impl Bodies {
     pub fn find(&self, node: &Node<'_>, problems: &mut Problems) -> Option<usize> {
         let name = node.str(problems)?;
         let found = self.index.get(name).copied();
-        if found.is_none() {
+        // Of many wrong names only the first are told, and comparing takes its time.
+        if found.is_none() && problems.is_full() {
+            problems.add(&node.span, "");
+        } else if found.is_none() {
             let mut names: Vec<&str> = self.index.keys().map(String::as_str).collect();
             names.sort_unstable();
             let remedy = nearest(name, &names);

@@ -4,21 +4,30 @@
 //! checks again. Units are SI and radians; degrees exist only in the file.
 
 mod body;
+pub mod carried;
 mod event;
+mod finding;
+pub mod keys;
+#[cfg(test)]
+mod keys_tests;
 mod pairing;
 mod problem;
 mod read;
+mod source;
 mod table;
+mod warnings;
 
 pub use body::Body;
 pub use event::{Action, Event, Framed};
+pub use finding::{Finding, Place, Severity};
 pub(crate) use pairing::lasting;
 pub use problem::Problems;
+pub use source::Source;
+pub use warnings::{WARNINGS, Warning};
 
 use crate::effect::Called;
 use crate::integrator::Method;
 use crate::trace::StreamSet;
-use std::io::Read as _;
 use std::path::Path;
 
 /// A scripted run.
@@ -108,20 +117,25 @@ pub enum SceneError {
     Wrong(#[from] Problems),
 }
 
+impl SceneError {
+    /// What is wrong, each with its place.
+    pub fn findings(&self) -> Vec<Finding> {
+        match self {
+            Self::Wrong(problems) => problems.findings(),
+            Self::Unreadable { file, why, remedy } => vec![Finding {
+                code: "unreadable",
+                message: format!("cannot be read: {why}"),
+                remedy: Some(remedy.clone()),
+                ..Finding::at(file, "", &(0..0))
+            }],
+        }
+    }
+}
+
 impl Scene {
     /// Reads and checks a scene file.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let file = path.display().to_string();
-        let source = read_to_string(path).map_err(|error| SceneError::Unreadable {
-            why: error.to_string(),
-            remedy: remedy_for(path, &error),
-            file: file.clone(),
-        })?;
-        let name = path.file_stem().map_or_else(
-            || "scene".to_owned(),
-            |stem| stem.to_string_lossy().into_owned(),
-        );
-        Ok(Self::parse(&file, &name, &source)?)
+        Ok(Source::read(path)?.scene()?)
     }
 
     /// Why the scene's method does not take the torques it has; a scene that was parsed has no such
@@ -132,50 +146,12 @@ impl Scene {
 
     /// Checks the text of a scene; `file` is how messages call it.
     pub fn parse(file: &str, name: &str, source: &str) -> Result<Self, Problems> {
-        read::scene(file, name, source)
+        Ok(read::scene((file, name, source), false)?.0)
     }
-}
 
-/// A scene's bytes at most: 10,000 bodies take two million.
-const LARGEST: u64 = 1 << 26;
-
-fn read_to_string(path: &Path) -> std::io::Result<String> {
-    let mut source = String::new();
-    let file = std::fs::File::open(path)?;
-    if file.take(LARGEST + 1).read_to_string(&mut source)? as u64 > LARGEST {
-        let why = format!("it is larger than any scene ({LARGEST} bytes)");
-        return Err(std::io::Error::other(why));
-    }
-    Ok(source)
-}
-
-fn remedy_for(path: &Path, error: &std::io::Error) -> String {
-    if error.kind() == std::io::ErrorKind::InvalidData {
-        return "a scene is a text in UTF-8".to_owned();
-    }
-    if path.is_dir() {
-        return "name a scene file, not a folder".to_owned();
-    }
-    if error.kind() != std::io::ErrorKind::NotFound {
-        return "a scene is a TOML file that you may read".to_owned();
-    }
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let scenes: Vec<String> = std::fs::read_dir(folder)
-        .into_iter()
-        .flatten()
-        .flatten()
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .filter(|name| name.ends_with(".toml") && name != "Cargo.toml")
-        .collect();
-    let wanted = path.file_name().unwrap_or_default().to_string_lossy();
-    match scenes.iter().map(String::as_str).collect::<Vec<_>>() {
-        names if names.is_empty() => "`torquescope scenes` lists the scenes there are".to_owned(),
-        mut names => {
-            names.sort_unstable();
-            table::nearest(&wanted, &names)
-        }
+    /// Checks the text of a scene and judges it: beside the scene what is legal and probably wrong, but
+    /// for what the scene says is meant.
+    pub fn judge(file: &str, name: &str, source: &str) -> Result<(Self, Vec<Finding>), Problems> {
+        read::scene((file, name, source), true)
     }
 }

@@ -45,6 +45,10 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
         return Vec::new();
     };
     let mut found = Vec::new();
+    let mut events: Vec<Vec<usize>> = vec![Vec::new(); scene.bodies.len()];
+    for (index, event) in scene.events.iter().enumerate() {
+        events[event.body].push(index);
+    }
     for (k, body) in scene.bodies.iter().enumerate() {
         let (inertial, q_bp) = Inertial::new(&body.properties, body.pivot_b);
         let mut block = InertialBlock::default();
@@ -55,8 +59,8 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
             found.push(Unpaired { why, event: None });
             continue;
         }
-        let events = scene.events.iter().enumerate();
-        for (index, event) in events.filter(|(_, event)| event.body == k) {
+        for &index in &events[k] {
+            let event = &scene.events[index];
             let mut load = lasting(scene);
             if let Some(effect) = event.effect(0, &inertial, q_bp.inverse()) {
                 load.push(effect);

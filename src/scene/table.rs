@@ -1,7 +1,9 @@
 //! A TOML table read key by key: types checked, unknown keys named, every problem kept.
 //!
-//! Deserialising by derive would stop at the first problem; a scene reports all of them.
+//! Deserialising by derive would stop at the first problem; a scene reports all of them. Which keys a
+//! table has stands in [`super::keys`].
 
+use super::keys::{Key, Keys, Takes};
 use super::problem::Problems;
 use nalgebra::Vector3;
 use std::cell::RefCell;
@@ -9,13 +11,21 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A table, and which of its keys have been asked for.
+/// A table of a scene.
 pub(super) struct Table<'d> {
     entries: &'d DeTable<'d>,
     span: Range<usize>,
     /// As the messages name it, such as `[effects]`.
     name: String,
-    known: RefCell<Vec<&'static str>>,
+    known: Known,
+}
+
+/// Which keys a table may have.
+enum Known {
+    /// Those that are declared.
+    Declared(&'static Keys),
+    /// Those that are asked for: what a table of the program (solids, effects) says they take.
+    Asked(RefCell<Vec<&'static str>>),
 }
 
 /// The value of a key.
@@ -23,15 +33,26 @@ pub(super) struct Node<'d> {
     pub key: &'static str,
     pub span: Range<usize>,
     value: &'d DeValue<'d>,
+    takes: Option<&'static Takes>,
 }
 
 impl<'d> Table<'d> {
+    /// A table whose keys are those that the reader asks for.
     pub fn new(entries: &'d DeTable<'d>, span: Range<usize>, name: impl Into<String>) -> Self {
+        Self::with(entries, span, name.into(), Known::Asked(RefCell::default()))
+    }
+
+    /// The document.
+    pub fn top(entries: &'d DeTable<'d>, keys: &'static Keys) -> Self {
+        Self::with(entries, 0..0, keys.name.to_owned(), Known::Declared(keys))
+    }
+
+    fn with(entries: &'d DeTable<'d>, span: Range<usize>, name: String, known: Known) -> Self {
         Self {
             entries,
             span,
-            name: name.into(),
-            known: RefCell::default(),
+            name,
+            known,
         }
     }
 
@@ -45,17 +66,37 @@ impl<'d> Table<'d> {
 
     /// The value of a key, which from now on is known; `None` where it is absent.
     pub fn get(&self, key: &'static str) -> Option<Node<'d>> {
-        let mut known = self.known.borrow_mut();
-        if !known.contains(&key) {
-            known.push(key);
-        }
-        drop(known);
+        let declared = self.declared(key);
         let value: &'d Spanned<DeValue<'d>> = self.entries.get(key)?;
         Some(Node {
             key,
             span: value.span(),
             value: value.get_ref(),
+            takes: declared.map(|key| &key.takes),
         })
+    }
+
+    /// What is declared of a key that is asked for.
+    fn declared(&self, key: &'static str) -> Option<&'static Key> {
+        match &self.known {
+            Known::Declared(keys) => {
+                debug_assert!(
+                    keys.has(key),
+                    "`{key}` of {} is not declared in scene/keys.rs",
+                    keys.name
+                );
+                #[cfg(test)]
+                super::keys_tests::asked(keys, key);
+                keys.find(key)
+            }
+            Known::Asked(known) => {
+                let mut known = known.borrow_mut();
+                if !known.contains(&key) {
+                    known.push(key);
+                }
+                None
+            }
+        }
     }
 
     pub fn has(&self, key: &str) -> bool {
@@ -72,7 +113,7 @@ impl<'d> Table<'d> {
         let node = self.get(key);
         if node.is_none() {
             let message = format!("{} lacks `{key}`; add {what}", self.name);
-            problems.add(&self.span, message);
+            problems.add_as("missing-key", &self.span, message);
         }
         node
     }
@@ -94,30 +135,34 @@ impl<'d> Table<'d> {
         };
         let mut tables = Vec::new();
         for item in items.iter() {
-            let item = Node {
-                key,
-                span: item.span(),
-                value: item.get_ref(),
-            };
-            tables.extend(item.table(format!("[[{key}]]"), problems));
+            tables.extend(node.item(item).table(format!("[[{key}]]"), problems));
         }
         tables
     }
 
-    /// Names every key that nobody asked for, with the nearest one that is known. Call it last.
+    /// Names every key that is not known, with the nearest one that is. Call it last.
     pub fn check_keys(&self, problems: &mut Problems) {
-        let known = self.known.borrow();
+        let is_known = |name: &str| match &self.known {
+            Known::Declared(keys) => keys.has(name),
+            Known::Asked(known) => known.borrow().contains(&name),
+        };
         for (key, _) in self.entries.iter() {
             let name = key.get_ref().as_ref();
-            if !known.contains(&name) {
-                let remedy = nearest(name, &known);
-                let message = format!(
-                    "unknown key `{}` in {}; {remedy}",
-                    shortened(name),
-                    self.name
-                );
-                problems.add(&key.span(), message);
+            if is_known(name) {
+                continue;
             }
+            let known = match &self.known {
+                _ if problems.is_full() => Vec::new(),
+                Known::Declared(keys) => keys.names(),
+                Known::Asked(known) => known.borrow().clone(),
+            };
+            let message = format!(
+                "unknown key `{}` in {}; {}",
+                shortened(name),
+                self.name,
+                nearest(name, &known)
+            );
+            problems.add_as("unknown-key", &key.span(), message);
         }
     }
 }
@@ -128,12 +173,15 @@ pub(super) fn nearest(name: &str, known: &[&str]) -> String {
     const LONGEST: usize = 64;
     /// As many as one reads.
     const MOST: usize = 16;
+    /// As many as are compared: a scene may have a hundred thousand names.
+    const COMPARED: usize = 2_000;
     let length = name.chars().count();
     // A slip of the hand: up to a third of the letters, by edits or swaps.
     let distance = |candidate: &&&str| strsim::damerau_levenshtein(name, candidate);
     let close = |candidate: &&&str| 3 * distance(candidate) <= length.max(3);
     let comparable = known
         .iter()
+        .take(COMPARED)
         .filter(|c| length <= LONGEST && c.len() <= LONGEST);
     if let Some(best) = comparable.filter(close).min_by_key(distance) {
         return format!("did you mean `{best}`?");
@@ -158,8 +206,9 @@ impl<'d> Node<'d> {
     }
 
     fn wrong(&self, wanted: &str, problems: &mut Problems) {
-        let message = format!("is {}, not {wanted}", with_article(self.value.type_str()));
-        self.problem(message, problems);
+        let wrong = with_article(self.value.type_str());
+        let message = format!("{} is {wrong}, not {wanted}", self.text(problems));
+        problems.add_as("wrong-type", &self.span, message);
     }
 
     pub fn is_text(&self) -> bool {
@@ -236,12 +285,7 @@ impl<'d> Node<'d> {
         };
         let mut numbers = [0.0; N];
         for (slot, item) in numbers.iter_mut().zip(array.iter()) {
-            let item = Node {
-                key: self.key,
-                span: item.span(),
-                value: item.get_ref(),
-            };
-            *slot = item.number(unit, problems)?;
+            *slot = self.item(item).number(unit, problems)?;
         }
         Some(numbers)
     }
@@ -258,14 +302,8 @@ impl<'d> Node<'d> {
         };
         let mut rows = Vec::with_capacity(3);
         for item in array.iter() {
-            let row = Node {
-                key: self.key,
-                span: item.span(),
-                value: item.get_ref(),
-            };
-            rows.push(nalgebra::RowVector3::from(
-                row.numbers::<3>(unit, problems)?,
-            ));
+            let row = self.item(item).numbers::<3>(unit, problems)?;
+            rows.push(nalgebra::RowVector3::from(row));
         }
         Some(nalgebra::Matrix3::from_rows(&rows))
     }
@@ -278,12 +316,7 @@ impl<'d> Node<'d> {
             self.wrong("a list of texts in quotes", problems);
             return None;
         };
-        let node = |item: &'d Spanned<DeValue<'d>>| Node {
-            key: self.key,
-            span: item.span(),
-            value: item.get_ref(),
-        };
-        Some(texts.iter().map(node).collect())
+        Some(texts.iter().map(|item| self.item(item)).collect())
     }
 
     pub fn table(self, name: String, problems: &mut Problems) -> Option<Table<'d>> {
@@ -291,7 +324,20 @@ impl<'d> Node<'d> {
             self.wrong("a table", problems);
             return None;
         };
-        Some(Table::new(entries, self.span, name))
+        Some(match self.takes.and_then(Takes::table) {
+            Some(keys) => Table::with(entries, self.span, name, Known::Declared(keys)),
+            None => Table::new(entries, self.span, name),
+        })
+    }
+
+    /// An entry of the list that this is.
+    fn item(&self, item: &'d Spanned<DeValue<'d>>) -> Node<'d> {
+        Node {
+            key: self.key,
+            span: item.span(),
+            value: item.get_ref(),
+            takes: self.takes.and_then(Takes::entry),
+        }
     }
 
     /// The only entry of a one-key table such as `{ body = […] }`, under this node's own key.
@@ -301,6 +347,7 @@ impl<'d> Node<'d> {
             key: self.key,
             span: value.span(),
             value: value.get_ref(),
+            takes: self.takes,
         };
         Some((name, node))
     }
