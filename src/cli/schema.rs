@@ -302,10 +302,10 @@ fn page() -> String {
 /// The tables that may stand there, after those that are known.
 fn within(takes: &'static Takes, tables: &mut Vec<&'static Keys>) {
     match takes {
-        Takes::Table(keys) | Takes::Tables(keys) => {
-            if !tables.iter().any(|known| known.name == keys.name) {
-                tables.push(keys);
-            }
+        Takes::Table(keys) | Takes::Tables(keys)
+            if !tables.iter().any(|known| known.name == keys.name) =>
+        {
+            tables.push(keys);
         }
         Takes::List(inner) => within(inner, tables),
         Takes::Either(several) => several.iter().for_each(|inner| within(inner, tables)),
