@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use std::cell::RefCell;
 use std::ops::Range;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeInteger, DeTable, DeValue};
 
 /// A table of a scene.
 pub(super) struct Table<'d> {
@@ -364,15 +364,21 @@ fn as_number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(float) => float.as_str().parse().ok(),
         DeValue::Integer(integer) => {
-            // Of any length: what an i128 does not hold is a number all the same.
             let whole = i128::from_str_radix(integer.as_str(), integer.radix());
-            whole.map_or_else(
-                |_| integer.as_str().parse().ok(),
-                |whole| Some(whole as f64),
-            )
+            whole.map_or_else(|_| beyond(integer), |whole| Some(whole as f64))
         }
         _ => None,
     }
+}
+
+/// Of any length: what an i128 does not hold is a number all the same.
+fn beyond(integer: &DeInteger<'_>) -> Option<f64> {
+    let radix = integer.radix();
+    if radix == 10 {
+        return integer.as_str().parse().ok();
+    }
+    let digit = |x: f64, c: char| Some(x * f64::from(radix) + f64::from(c.to_digit(radix)?));
+    integer.as_str().chars().try_fold(0.0, digit)
 }
 
 /// Not longer than one reads.
@@ -390,4 +396,39 @@ fn with_article(noun: &str) -> String {
         "a"
     };
     format!("{article} {noun}")
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::Scene;
+
+    #[test]
+    fn integers_of_any_length_and_base_are_the_numbers_they_are() {
+        let long = format!("0x{}e5", "1".repeat(40));
+        // 0x11…1 (40 ones) times 256 and 0xe5, in binary floating point: (16⁴⁰ - 1)/15 · 256 to a rounding or two.
+        let value = (16.0_f64.powi(40) / 15.0) * 256.0;
+        for (text, wanted) in [
+            ("12", 12.0),
+            ("0x1f", 31.0),
+            ("0b101", 5.0),
+            ("0o17", 15.0),
+            ("1_000", 1000.0),
+            ("0x7fff_ffff", 2_147_483_647.0),
+            (
+                "123456789012345678901234567890123456789012345",
+                1.234_567_890_123_456_8e44,
+            ),
+            (long.as_str(), value),
+        ] {
+            let source = format!(
+                "duration = 1\n[[body]]\nname = \"b\"\nmass = 1\ninertia = [1, 1, 1]\nposition = [{text}, 0, 0]\n"
+            );
+            let scene = Scene::parse("s", "s", &source).unwrap_or_else(|why| panic!("{why}"));
+            let x = scene.bodies[0].position_w.x;
+            assert!(
+                (x / wanted - 1.0).abs() < 1e-15,
+                "{text} is {x}, not {wanted}"
+            );
+        }
+    }
 }

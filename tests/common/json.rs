@@ -22,10 +22,11 @@ fn value(item: &DeValue<'_>) -> Value {
         DeValue::Boolean(is) => Value::Bool(*is),
         // JSON has no infinities; as null they are no number.
         DeValue::Float(float) => float.as_str().parse::<f64>().ok().into(),
-        DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {
-            Ok(whole) => whole.into(),
-            Err(_) => integer.as_str().parse::<f64>().ok().into(),
-        },
+        // Of whatever length and base it is a number.
+        DeValue::Integer(integer) => {
+            let whole = i128::from_str_radix(integer.as_str(), integer.radix());
+            whole.map_or(1e300, |whole| whole as f64).into()
+        }
         DeValue::Array(items) => items.iter().map(|item| value(item.get_ref())).collect(),
         DeValue::Table(entries) => table(entries),
         DeValue::Datetime(time) => Value::String(time.to_string()),
