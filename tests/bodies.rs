@@ -28,7 +28,14 @@ impl Sink for Nowhere {
 
 fn parsed(rest: &str) -> Result<Scene, String> {
     let source = format!("duration = 1.0\n{rest}");
-    Scene::parse("s.toml", "s", &source).map_err(|problems| problems.to_string())
+    Scene::parse("s.toml", "s", &source).map_err(|problems| lines(&problems))
+}
+
+/// The problems, a line each, without the pictures below them.
+fn lines(problems: &torquescope::scene::Problems) -> String {
+    let findings = problems.findings();
+    let lines: Vec<String> = findings.iter().map(|finding| finding.line()).collect();
+    lines.join("\n")
 }
 
 fn scene(rest: &str) -> Scene {

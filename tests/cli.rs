@@ -42,7 +42,11 @@ fn wrong_scenes_are_told_what_is_wrong_all_at_once() {
         assert!(!recording.exists(), "{name} left a recording");
         assert_eq!(text(&output.stdout), "", "{name}");
         let golden = folder.join(name.replace(".toml", ".txt"));
-        let said = text(&output.stderr);
+        // Below each message stand its line and a caret, indented: tests/checking.rs sees to those.
+        let said: String = text(&output.stderr)
+            .split_inclusive('\n')
+            .filter(|line| !line.starts_with("  "))
+            .collect();
         for line in said.lines() {
             assert!(line.starts_with(&format!("{name}:")), "{name}: {line}");
         }
@@ -54,18 +58,23 @@ fn wrong_scenes_are_told_what_is_wrong_all_at_once() {
     }
 }
 
-/// `UPDATE_GOLDEN=1 cargo test --test cli` writes it anew.
+/// `UPDATE_GOLDEN=1 cargo test --test cli` writes them anew.
 #[test]
-fn the_page_of_methods_is_what_the_table_says() {
-    let output = torquescope(&root())
-        .args(["methods", "--markdown"])
-        .output();
-    let said = text(&output.unwrap().stdout);
-    let page = root().join("docs/methods.md");
-    if std::env::var_os("UPDATE_GOLDEN").is_some() {
-        std::fs::write(&page, &said).unwrap();
+fn the_pages_are_what_the_tables_say() {
+    for (arguments, page) in [
+        (&["methods", "--markdown"][..], "docs/methods.md"),
+        (&["schema", "--markdown"][..], "docs/keys.md"),
+        (&["schema"][..], "docs/scene.schema.json"),
+    ] {
+        let output = torquescope(&root()).args(arguments).output();
+        let said = text(&output.unwrap().stdout);
+        let page = root().join(page);
+        if std::env::var_os("UPDATE_GOLDEN").is_some() {
+            std::fs::write(&page, &said).unwrap();
+        }
+        let written = std::fs::read_to_string(&page).unwrap_or_default();
+        assert_eq!(written, said, "{}", page.display());
     }
-    assert_eq!(std::fs::read_to_string(&page).unwrap_or_default(), said);
 }
 
 #[test]
@@ -271,7 +280,7 @@ fn json_has_every_digit() {
 #[test]
 fn a_run_that_loses_its_state_closes_its_file_and_says_why() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = "duration = 10.0\n[stepping]\nmethod = \"semi-implicit\"\nstep = 0.01\n[effects]\ngyroscopic = true\n[[body]]\nname = \"top\"\nmass = 1.0\ninertia = [1, 2, 2.5]\nangular_velocity = [90, 20, -60]\n";
+    let scene = "duration = 10.0\nallow = [\"coarse-step\"]\n[stepping]\nmethod = \"semi-implicit\"\nstep = 0.01\n[effects]\ngyroscopic = true\n[[body]]\nname = \"top\"\nmass = 1.0\ninertia = [1, 2, 2.5]\nangular_velocity = [90, 20, -60]\n";
     std::fs::write(folder.path().join("burst.toml"), scene).unwrap();
     let output = torquescope(folder.path())
         .args(["run", "burst.toml"])
@@ -364,9 +373,7 @@ fn the_lists_and_help() {
             serde_json::from_slice(&json.stdout).unwrap();
         assert!(!list.is_empty(), "{verb}");
     }
-    let output = torquescope(&root()).arg("scenes").output().unwrap();
-    assert!(text(&output.stdout).contains("The tutorial's cone"));
-    for verb in ["run", "cost", "view", "check", "scenes"] {
+    for verb in ["run", "cost", "view", "check", "scenes", "new", "schema"] {
         let output = torquescope(&root())
             .args([verb, "--help"])
             .output()
@@ -532,18 +539,197 @@ fn a_plan_is_explained() {
 #[test]
 fn check_says_right_or_wrong() {
     let output = torquescope(&root())
-        .args(["check", "scenes/cone.toml", "scenes/wheel.toml"])
+        .args(["check", "scenes/cone.toml", "@wheel"])
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(0));
     assert_eq!(text(&output.stdout).lines().count(), 2);
-    let wrong = "tests/fixtures/wrong/zero_step.toml";
+    let wrong = "tests/fixtures/wrong/clock.toml";
     let output = torquescope(&root())
-        .args(["check", wrong, "scenes/cone.toml"])
+        .args(["check", wrong, "gone.toml", "scenes/cone.toml"])
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(2));
-    assert!(text(&output.stderr).starts_with(wrong));
+    let said = text(&output.stderr);
+    let picture = "13 | immovable = [\"z\"]\n     |             ^^^^^\n";
+    assert!(said.starts_with(wrong) && said.contains(picture), "{said}");
+    assert!(said.contains("gone.toml: cannot be read"), "{said}");
+    // The right one among the wrong ones is told as right.
+    assert!(text(&output.stdout).starts_with("scenes/cone.toml: ok"));
+}
+
+/// A scene whose only fault is that its step is too coarse.
+const COARSE: &str = "duration = 1.0\n[stepping]\nstep = 0.1\n[record]\nrate = 10\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 1, 1]\nangular_velocity = [0, 9, 0]\n";
+
+#[test]
+fn warnings_are_told_and_only_strict_minds_them() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), COARSE).unwrap();
+    let check = |more: &[&str]| {
+        let mut command = torquescope(folder.path());
+        command.args(["check", "s.toml"]).args(more);
+        command.output().unwrap()
+    };
+    let wanted = "s.toml:3:8: warning: a step of 0.1 s is above a tenth of the fastest period, 6.981e-1 s: a turns at 9.000 rad/s; take a step of 6.0e-2 s or less [coarse-step]\n";
+    let output = check(&[]);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(
+        text(&output.stderr),
+        format!("{wanted}  3 | step = 0.1\n    |        ^^^\n")
+    );
+    assert_eq!(check(&["--strict"]).status.code(), Some(1));
+    let output = check(&["--format", "json"]);
+    assert_eq!(text(&output.stderr), "");
+    let list: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let one = &list[0];
+    assert_eq!(list.as_array().unwrap().len(), 1);
+    assert_eq!(
+        (
+            &one["file"],
+            &one["line"],
+            &one["column"],
+            &one["end_column"]
+        ),
+        (&"s.toml".into(), &3.into(), &8.into(), &11.into())
+    );
+    assert_eq!(
+        (&one["severity"], &one["code"], &one["remedy"]),
+        (
+            &"warning".into(),
+            &"coarse-step".into(),
+            &"take a step of 6.0e-2 s or less".into()
+        )
+    );
+    // `run` tells them too, in a line each, and does what it was asked.
+    let output = torquescope(folder.path())
+        .args(["run", "s.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(text(&output.stderr), wanted);
+    let meant = format!("allow = [\"coarse-step\"]\n{COARSE}");
+    std::fs::write(folder.path().join("s.toml"), meant).unwrap();
+    let output = check(&["--strict"]);
+    assert_eq!(
+        (output.status.code(), text(&output.stderr)),
+        (Some(0), String::new())
+    );
+    // Errors for editors, a file that is not there among them.
+    let output = torquescope(&root())
+        .args([
+            "check",
+            "--format",
+            "json",
+            "tests/fixtures/wrong/nothing.toml",
+            "gone.toml",
+        ])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let list: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let codes: Vec<&str> = list
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|f| f["code"].as_str().unwrap())
+        .collect();
+    assert_eq!(codes, ["missing-key", "invalid", "unreadable"]);
+}
+
+#[test]
+fn carried_scenes_run_without_a_checkout() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = torquescope(folder.path()).arg("scenes").output().unwrap();
+    let said = text(&output.stdout);
+    assert!(
+        said.contains("@cone") && said.contains("The tutorial's cone"),
+        "{said}"
+    );
+    let inside = torquescope(&root())
+        .args(["scenes", "scenes"])
+        .output()
+        .unwrap();
+    // A folder's scenes are listed by file, as many as are carried.
+    assert!(text(&inside.stdout).contains("scenes/cone.toml"));
+    assert_eq!(text(&inside.stdout).lines().count(), said.lines().count());
+    torquescope(folder.path())
+        .args(["run", "@wing_nut"])
+        .assert()
+        .success();
+    assert!(folder.path().join("wing_nut.rrd").exists());
+    let output = torquescope(folder.path())
+        .args(["run", "@wingnut"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        text(&output.stderr),
+        "@wingnut: cannot be read: no scene of this name is carried; did you mean `@wing_nut`?\n"
+    );
+    let output = torquescope(folder.path())
+        .args(["view", "@cone"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("is a scene, no recording"));
+}
+
+#[test]
+fn a_new_scene_runs_and_overwrites_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let new = |arguments: &[&str]| {
+        let mut command = torquescope(folder.path());
+        command.arg("new").args(arguments);
+        command.output().unwrap()
+    };
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(new(&["top"]).status.code(), Some(0));
+    let scene = read("top.toml");
+    assert!(scene.starts_with("#:schema ./scene.schema.json\n# "));
+    let schema = std::fs::read_to_string(root().join("docs/scene.schema.json")).unwrap();
+    assert_eq!(read("scene.schema.json"), schema);
+    let check = torquescope(folder.path())
+        .args(["check", "--strict", "top.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(
+        (check.status.code(), text(&check.stderr)),
+        (Some(0), String::new())
+    );
+    torquescope(folder.path())
+        .args(["run", "top.toml"])
+        .assert()
+        .success();
+    // Again: neither the scene nor an older schema is touched.
+    std::fs::write(folder.path().join("scene.schema.json"), "{}").unwrap();
+    let again = new(&["top.toml"]);
+    assert_eq!(again.status.code(), Some(2));
+    assert_eq!(
+        text(&again.stderr),
+        "top.toml exists; choose another name, so that it is not lost\n"
+    );
+    let other = new(&["other", "--from", "@cone"]);
+    assert!(text(&other.stdout).contains("scene.schema.json: kept, but of another version"));
+    assert_eq!(
+        (read("top.toml"), read("scene.schema.json")),
+        (scene, "{}".to_owned())
+    );
+    let cone = std::fs::read_to_string(root().join("scenes/cone.toml")).unwrap();
+    assert_eq!(
+        read("other.toml"),
+        format!("#:schema ./scene.schema.json\n{cone}")
+    );
+    for wrong in [
+        &["x", "--from", "@con"][..],
+        &["@x"],
+        &["nowhere/x"],
+        &["/"],
+    ] {
+        let output = new(wrong);
+        assert_eq!(output.status.code(), Some(2), "{wrong:?}");
+        assert_eq!(text(&output.stderr).lines().count(), 1, "{wrong:?}");
+    }
+    assert!(!folder.path().join("x.toml").exists());
 }
 
 #[test]
@@ -611,4 +797,103 @@ fn view_refuses_what_is_no_recording() {
         .unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("cannot be read"));
+}
+
+#[test]
+fn a_carried_scene_brings_its_files_and_its_recording_is_verified_anywhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |arguments: &[&str]| {
+        let output = torquescope(folder.path()).args(arguments).output().unwrap();
+        (
+            output.status.code(),
+            text(&output.stdout),
+            text(&output.stderr),
+        )
+    };
+    let (code, _, said) = run(&["run", "@t_handle", "--until", "0.5"]);
+    assert_eq!((code, said.as_str()), (Some(0), ""));
+    let (code, said, wrong) = run(&["run", "t_handle.rrd", "--verify"]);
+    assert_eq!(code, Some(0), "{said}{wrong}");
+    let (code, _, wrong) = run(&["check", "--strict", "@t_handle", "@spin_down", "@tops"]);
+    assert_eq!((code, wrong.as_str()), (Some(0), ""));
+    // A copy has the file beside it, and is the same scene.
+    let (code, said, _) = run(&["new", "mine", "--from", "@t_handle"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("t_handle.obj: written"), "{said}");
+    let (code, said, wrong) = run(&["check", "--strict", "mine.toml"]);
+    assert_eq!((code, wrong.as_str()), (Some(0), ""), "{said}");
+}
+
+#[test]
+fn every_carried_scene_is_right_without_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = torquescope(folder.path());
+    command.args(["check", "--strict"]);
+    for scene in torquescope::scene::carried::CARRIED {
+        command.arg(format!("@{}", scene.name));
+    }
+    let output = command.output().unwrap();
+    assert_eq!(
+        (output.status.code(), text(&output.stderr)),
+        (Some(0), String::new())
+    );
+}
+
+#[test]
+fn check_looks_at_every_value_of_a_sweep() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = format!("{COARSE}[sweep]\n\"body.a.mass\" = [1.0, -1.0]\n");
+    std::fs::write(folder.path().join("s.toml"), &scene).unwrap();
+    let output = torquescope(folder.path())
+        .args(["check", "s.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        text(&output.stderr),
+        "s.toml:12:23: mass = -1.0 must be above zero (kg)\n  12 | \"body.a.mass\" = [1.0, -1.0]\n     |                       ^^^^\n"
+    );
+    let right = scene.replace("-1.0]", "2.0]");
+    std::fs::write(folder.path().join("s.toml"), &right).unwrap();
+    let output = torquescope(folder.path())
+        .args(["check", "s.toml"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(text(&output.stdout).ends_with("the first of 2 that its sweep makes\n"));
+    // The step's warning is one, whatever the mass.
+    let warned = text(&output.stderr);
+    assert_eq!(warned.matches("[coarse-step]").count(), 1, "{warned}");
+}
+
+#[test]
+fn what_an_argument_makes_probably_wrong_is_told_once_by_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = COARSE.replace("step = 0.1", "step = 0.01");
+    std::fs::write(folder.path().join("s.toml"), scene).unwrap();
+    let output = torquescope(folder.path())
+        .args(["run", "s.toml", "--set", "step=0.1"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    let said = text(&output.stderr);
+    assert!(
+        said.starts_with("--set step=0.1: warning: a step of 0.1 s"),
+        "{said}"
+    );
+    assert_eq!(said.lines().count(), 1, "{said}");
+    // Run again as it was made, a recording has nothing new to say; changed, it has.
+    let again = torquescope(folder.path())
+        .args(["run", "s.rrd"])
+        .output()
+        .unwrap();
+    assert_eq!(
+        (again.status.code(), text(&again.stderr)),
+        (Some(0), String::new())
+    );
+    let changed = torquescope(folder.path())
+        .args(["run", "s.rrd", "--set", "step=0.09", "--out", "c.rrd"])
+        .output()
+        .unwrap();
+    assert!(text(&changed.stderr).contains("--set step=0.09: warning:"));
 }

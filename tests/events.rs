@@ -20,8 +20,15 @@ fn parse(source: &str) -> Scene {
 fn wrong(source: &str) -> String {
     match Scene::parse("inline", "inline", source) {
         Ok(_) => panic!("right: {source}"),
-        Err(problems) => problems.to_string(),
+        Err(problems) => lines(&problems),
     }
+}
+
+/// The problems, a line each, without the pictures below them.
+fn lines(problems: &torquescope::scene::Problems) -> String {
+    let findings = problems.findings();
+    let lines: Vec<String> = findings.iter().map(|finding| finding.line()).collect();
+    lines.join("\n")
 }
 
 /// Everything but the states.

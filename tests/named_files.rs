@@ -9,17 +9,24 @@ fn folder(name: &str) -> Folder {
     Folder(Path::new(env!("CARGO_MANIFEST_DIR")).join(name))
 }
 
+/// The problems, a line each, without the pictures below them.
+fn lines(problems: &torquescope::scene::Problems) -> String {
+    let findings = problems.findings();
+    let lines: Vec<String> = findings.iter().map(|finding| finding.line()).collect();
+    lines.join("\n")
+}
+
 fn body(keys: &str) -> String {
     format!("duration = 0.1\n[[body]]\nname = \"b\"\n{keys}\n")
 }
 
 fn robots(keys: &str) -> Result<Scene, String> {
     let folder = folder("tests/fixtures/robots");
-    Scene::parse_with("s.toml", "s", &body(keys), folder).map_err(|why| why.to_string())
+    Scene::parse_with("s.toml", "s", &body(keys), folder).map_err(|why| lines(&why))
 }
 
 fn meshes(keys: &str) -> Result<Scene, String> {
-    Scene::parse_with("s.toml", "s", &body(keys), folder("scenes")).map_err(|why| why.to_string())
+    Scene::parse_with("s.toml", "s", &body(keys), folder("scenes")).map_err(|why| lines(&why))
 }
 
 const HANDLE: &str =
@@ -99,10 +106,8 @@ fn what_is_wrong_with_a_mesh_is_told_at_its_place() {
         b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec(),
     )];
     let keys = body("shape = { mesh = { file = \"o.obj\" } }\nmass = 1.0");
-    let open = Scene::parse_with("s.toml", "s", &keys, open.to_vec())
-        .err()
-        .unwrap()
-        .to_string();
+    let open = Scene::parse_with("s.toml", "s", &keys, open.to_vec());
+    let open = lines(&open.err().unwrap());
     assert_eq!(
         open,
         "s.toml:4:27: file = \"o.obj\" is no body: the mesh is open: the edge from (0, 0, 0) to (1, 0, 0) belongs to one face only, line 4 (and so do 2 edges more); close the hole there, an open surface has no inside"

@@ -23,9 +23,9 @@ use std::time::Duration;
 /// angle between the attitudes (rad), or the distance of a free body's centre of mass as a part of its
 /// radius of gyration, whichever is more.
 #[derive(clap::Args)]
-#[command(after_help = "Example: torquescope cost scenes/free_top.toml --accuracy 1e-9")]
+#[command(after_help = "Example: torquescope cost @free_top --accuracy 1e-9")]
 pub struct Arguments {
-    /// The scene, a TOML file.
+    /// The scene, a TOML file, or one that the program carries, such as @free_top.
     scene: PathBuf,
     /// The accuracy (rad) that the sentence at the end is about [default: the scene's, or 1e-6].
     #[arg(long, value_name = "RAD", allow_negative_numbers = true)]

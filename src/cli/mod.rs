@@ -8,9 +8,11 @@ mod cost;
 mod explain;
 mod lists;
 mod mass;
+mod new;
 mod print;
 mod run;
 mod scenes;
+mod schema;
 mod verify;
 mod view;
 
@@ -29,7 +31,7 @@ use std::process::ExitCode;
 #[command(
     name = "torquescope",
     version,
-    after_help = "Start with: torquescope run scenes/cone.toml --view"
+    after_help = "Start with: torquescope run @cone --view"
 )]
 struct Arguments {
     #[command(subcommand)]
@@ -42,8 +44,10 @@ enum Verb {
     Cost(cost::Arguments),
     View(view::Arguments),
     Check(check::Arguments),
+    New(new::Arguments),
     Scenes(scenes::Arguments),
     Mass(mass::Arguments),
+    Schema(schema::Arguments),
     /// List the integration methods: order, what they preserve, citation.
     Methods(lists::MethodArguments),
     /// List the effects that a scene's [effects] can name.
@@ -62,8 +66,10 @@ pub fn main() -> ExitCode {
         Verb::Cost(arguments) => cost::run(&arguments),
         Verb::View(arguments) => view::run(&arguments),
         Verb::Check(arguments) => check::run(&arguments),
+        Verb::New(arguments) => new::run(&arguments),
         Verb::Scenes(arguments) => scenes::run(&arguments),
         Verb::Mass(arguments) => mass::run(&arguments),
+        Verb::Schema(arguments) => schema::run(&arguments),
         Verb::Methods(arguments) => lists::methods(&arguments),
         Verb::Effects(arguments) => lists::effects(&arguments),
         Verb::Streams(arguments) => lists::streams(&arguments),
@@ -72,6 +78,9 @@ pub fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
+            if let Some(&Told(code)) = error.downcast_ref() {
+                return ExitCode::from(code);
+            }
             print::err(&format!("{error:#}"));
             ExitCode::from(code(&error))
         }
@@ -82,6 +91,11 @@ pub fn main() -> ExitCode {
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 struct Wrong(String);
+
+/// What there is to say has been said; the exit code is this.
+#[derive(Debug, thiserror::Error)]
+#[error("exit code {0}")]
+struct Told(u8);
 
 fn code(error: &anyhow::Error) -> u8 {
     let record = error.downcast_ref::<RecordError>();

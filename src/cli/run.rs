@@ -4,7 +4,7 @@ use super::{Wrong, explain, print, verify, view};
 use crate::cost::{Plan, PlanError};
 use crate::effect::Profile;
 use crate::record::{self, Heading, Made, Provenance, RecordError, Recorder, Summary};
-use crate::scene::{Event, Scene, SceneError, Script, Stepping};
+use crate::scene::{Event, Finding, Scene, SceneError, Script, Stepping};
 use crate::sim::{Blow, Outcome, SimError, Simulation};
 use crate::trace::{Sample, Subject, short, short_numbers, short_vector};
 use serde::Serialize;
@@ -16,10 +16,11 @@ use std::path::{Path, PathBuf};
 /// A recording is as good as a scene: it holds the text it was made from, and is run again.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example: torquescope run scenes/cone.toml --view\n         torquescope run scenes/cone.toml --set body.free-A.mass=2 --until 0.5\n         torquescope run cone.rrd --verify"
+    after_help = "Example: torquescope run @cone --view\n         torquescope run scenes/cone.toml --set body.free-A.mass=2 --until 0.5\n         torquescope run cone.rrd --verify"
 )]
 pub struct Arguments {
-    /// The scene, a TOML file; or a recording of one, an .rrd file.
+    /// The scene, a TOML file, or one that the program carries, such as @cone (`torquescope scenes`); or a
+    /// recording of one, an .rrd file.
     pub(super) scene: PathBuf,
     /// Where the recording goes [default: the scene's name with .rrd, in the current folder; of a
     /// recording that is run again its name with -again.rrd].
@@ -181,10 +182,23 @@ pub(super) fn scenes(arguments: &Arguments, made: Option<&Made>) -> anyhow::Resu
             made.recordings.iter().map(script).collect()
         }
     };
+    // Of a recording that is run again as it was made everything has been told.
+    let judging = made.is_none() || arguments.changes();
+    let mut told: Vec<String> = Vec::new();
     let mut scenes: Vec<Scene> = Vec::new();
     for mut script in scripts {
         arguments.change(&mut script)?;
-        for scene in script.scenes().map_err(SceneError::Wrong)? {
+        let (all, warnings) = match judging {
+            true => script.judge().map_err(SceneError::Wrong)?,
+            false => (script.scenes().map_err(SceneError::Wrong)?, Vec::new()),
+        };
+        for line in warnings.iter().map(Finding::line) {
+            if !told.contains(&line) {
+                print::err(&line);
+                told.push(line);
+            }
+        }
+        for scene in all {
             // Recordings that differed in what is set now are one.
             if !scenes
                 .iter()

@@ -2,19 +2,36 @@
 
 use super::{Wrong, print};
 use crate::scene::Scene;
+use crate::scene::carried::{CARRIED, Carried};
 use std::path::{Path, PathBuf};
 
-/// List the scenes in a folder, with their titles.
+/// List the scenes that the program carries, or those in a folder, with their titles.
+///
+/// A carried scene runs anywhere: torquescope run @cone. `torquescope new my_cone --from @cone` makes a
+/// copy to change.
 #[derive(clap::Args)]
 #[command(after_help = "Example: torquescope scenes")]
 pub struct Arguments {
-    /// The folder.
-    #[arg(default_value = "scenes")]
-    folder: PathBuf,
+    /// A folder of scenes.
+    folder: Option<PathBuf>,
 }
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let folder = &arguments.folder;
+    let rows = match &arguments.folder {
+        Some(folder) => in_folder(folder)?,
+        None => {
+            let row = |scene: &Carried| {
+                let file = format!("@{}", scene.name);
+                let title = title(Path::new(&file));
+                vec![file, title]
+            };
+            CARRIED.iter().map(row).collect()
+        }
+    };
+    print::out(&print::table(&["scene", "title"], rows))
+}
+
+fn in_folder(folder: &Path) -> anyhow::Result<Vec<Vec<String>>> {
     let entries = std::fs::read_dir(folder).map_err(|error| {
         Wrong(format!(
             "{}: cannot be read: {error}; name a folder of scenes",
@@ -35,11 +52,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         ))
         .into());
     }
-    let rows = paths
-        .iter()
-        .map(|path| vec![path.display().to_string(), title(path)])
-        .collect();
-    print::out(&print::table(&["scene", "title"], rows))
+    let row = |path: &PathBuf| vec![path.display().to_string(), title(path)];
+    Ok(paths.iter().map(row).collect())
 }
 
 fn title(path: &Path) -> String {

@@ -89,6 +89,10 @@ pub fn serve(page: &Page, serving: &Serving, stdout_taken: bool) -> anyhow::Resu
 
 fn must_be_recording(file: &Path) -> anyhow::Result<()> {
     let wrong = |why: String| Wrong(format!("{}: {why}", file.display()));
+    if file.to_string_lossy().starts_with('@') {
+        let why = "is a scene, no recording; `torquescope run SCENE --view` records and opens it";
+        return Err(wrong(why.to_owned()).into());
+    }
     let mut magic = [0; 4];
     let read = std::fs::File::open(file).and_then(|mut file| file.read_exact(&mut magic));
     match read {

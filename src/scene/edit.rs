@@ -4,6 +4,7 @@
 //! what is parsed is what is stored, and every byte knows where it came from: a problem in it is told
 //! at the argument or the line that wrote it.
 
+use super::keys::SCENE;
 use super::table::{nearest, shortened};
 use crate::effect::EFFECTS;
 use std::ops::Range;
@@ -24,6 +25,8 @@ struct Splice {
     old: usize,
     new: usize,
     from: From,
+    /// Where among the new bytes the value is, if they are a value.
+    value: usize,
 }
 
 /// Where bytes that are put in come from.
@@ -33,8 +36,12 @@ pub(super) enum From {
     Here,
     /// The argument of that number.
     Argument(usize),
-    /// That place of the text as it was after so many splices.
-    Place { offset: usize, after: usize },
+    /// So many bytes at that place of the text as it was after so many splices.
+    Place {
+        offset: usize,
+        length: usize,
+        after: usize,
+    },
 }
 
 /// Where a byte came from.
@@ -58,9 +65,10 @@ impl Text {
     }
 
     /// A place of the text as it is now, for values that are copied from it.
-    pub fn place(&self, offset: usize) -> From {
+    pub fn place(&self, range: &Range<usize>) -> From {
         From::Place {
-            offset,
+            offset: range.start,
+            length: range.len(),
             after: self.splices.len(),
         }
     }
@@ -84,7 +92,11 @@ impl Text {
                 From::Place {
                     offset: there,
                     after,
-                } => (offset, k) = (there, after),
+                    length,
+                } => {
+                    let within = (offset - splice.at).saturating_sub(splice.value);
+                    (offset, k) = (there + within.min(length.saturating_sub(1)), after);
+                }
             }
         }
         Origin::File(offset)
@@ -120,7 +132,9 @@ impl Text {
         let document = parse(&self.text)?;
         let path = expand(document.get_ref(), &segments(path)?, value)?;
         let (range, new) = put(&self.text, document.get_ref(), &path, value)?;
-        self.splice(range, &new, from);
+        // What stands before it are keys and brackets.
+        let at = new.rfind(value).unwrap_or(0);
+        self.splice_value(range, &new, at, from);
         Ok(())
     }
 
@@ -200,11 +214,16 @@ impl Text {
     }
 
     fn splice(&mut self, range: Range<usize>, new: &str, from: From) {
+        self.splice_value(range, new, 0, from);
+    }
+
+    fn splice_value(&mut self, range: Range<usize>, new: &str, value: usize, from: From) {
         self.splices.push(Splice {
             at: range.start,
             old: range.len(),
             new: new.len(),
             from,
+            value,
         });
         self.text.replace_range(range, new);
     }
@@ -236,11 +255,6 @@ fn segments(path: &str) -> Result<Vec<String>, String> {
     }
 }
 
-/// What a scene's file holds at its top.
-const TOP: [&str; 10] = [
-    "title", "duration", "stepping", "record", "effects", "effect", "body", "swarm", "event",
-    "sweep",
-];
 /// Keys that stand for themselves: they are in no other table.
 const SHORT: [(&str, &str); 7] = [
     ("method", "stepping"),
@@ -261,7 +275,7 @@ fn expand(top: &DeTable<'_>, path: &[String], value: &str) -> Result<Vec<String>
         let parents = parents.iter().map(|&parent| parent.to_owned());
         parents.chain(path.iter().cloned()).collect()
     };
-    if TOP.contains(&first) {
+    if SCENE.has(first) {
         return Ok(path.to_vec());
     }
     if let Some((_, table)) = SHORT.iter().find(|(key, _)| *key == first) {
@@ -279,7 +293,7 @@ fn expand(top: &DeTable<'_>, path: &[String], value: &str) -> Result<Vec<String>
     if let [list] = lists.as_slice() {
         return Ok(within(&[list]));
     }
-    let mut known: Vec<&str> = TOP.to_vec();
+    let mut known = SCENE.names();
     known.extend(SHORT.iter().map(|(key, _)| key));
     known.extend(EFFECTS.iter().map(|kind| kind.name));
     let all = path.join(".");
@@ -740,7 +754,8 @@ mod tests {
         let mut text = Text::new(first);
         text.splice(7..8, "4444", From::Argument(5));
         // `mass = 4444`, `step = 22` three bytes later.
-        let place = text.place(text.as_str().find("22").unwrap());
+        let at = text.as_str().find("22").unwrap();
+        let place = text.place(&(at..at + 2));
         text.splice(0..0, "x = 9\n", From::Here);
         let at = text.as_str().find("3\n").unwrap();
         text.splice(at..at + 1, "22", place);

@@ -4,12 +4,17 @@
 //! checks again. Units are SI and radians; degrees exist only in the file.
 
 mod body;
+pub mod carried;
 mod edit;
 mod effect;
 mod event;
 mod files;
+mod finding;
 mod inertia;
 mod inertial;
+pub mod keys;
+#[cfg(test)]
+mod keys_tests;
 mod pairing;
 mod parts;
 pub mod pick;
@@ -18,18 +23,20 @@ mod read;
 mod script;
 mod swarm;
 mod table;
+mod warnings;
 
 pub use body::{Body, OwnMethod, Swarm};
 pub use effect::SceneEffect;
 pub(crate) use effect::lasting;
 pub use event::{Action, Change, Click, Event, Framed, Target};
 pub use files::{Enclosure, Folder, Library};
+pub use finding::{Finding, Place, Severity};
 pub use problem::Problems;
 pub use script::Script;
+pub use warnings::{WARNINGS, Warning};
 
 use crate::integrator::Method;
 use crate::trace::StreamSet;
-use std::io::Read as _;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -128,8 +135,27 @@ pub enum SceneError {
     Wrong(#[from] Problems),
 }
 
+impl SceneError {
+    /// What is wrong, each with its place.
+    pub fn findings(&self) -> Vec<Finding> {
+        match self {
+            Self::Wrong(problems) => problems.findings(),
+            Self::Unreadable { file, why, remedy } => vec![Finding {
+                code: "unreadable",
+                message: format!("cannot be read: {why}"),
+                remedy: Some(remedy.clone()),
+                ..Finding::at(file, "", &problem::At::File(0..0))
+            }],
+        }
+    }
+}
+
+/// A scene's bytes at most: 10,000 bodies take two million, more are made by a swarm; and while it is read
+/// each byte takes a hundred.
+const LARGEST: u64 = 1 << 23;
+
 impl Scene {
-    /// Reads and checks a scene file.
+    /// Reads and checks a scene file, or a scene that the program carries, such as `@cone`.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
         Ok(Script::load(path)?.scene()?)
     }
@@ -140,7 +166,8 @@ impl Scene {
         pairing::refusal(self)
     }
 
-    /// Checks the text of a scene that names no other files; `file` is how messages call it.
+    /// Checks the text of a scene that names no other files ([`Script::with_files`] is for one that does,
+    /// [`Script::judge`] tells what about it is probably wrong too); `file` is how messages call it.
     pub fn parse(file: &str, name: &str, source: &str) -> Result<Self, Problems> {
         Script::new(file, name, source).scene()
     }
@@ -154,64 +181,5 @@ impl Scene {
         library: impl Library + 'static,
     ) -> Result<Self, Problems> {
         Script::new(file, name, source).with_files(library).scene()
-    }
-}
-
-/// What messages call a file, the name of its scene, and its text.
-fn text_of(path: &Path) -> Result<(String, String, String), SceneError> {
-    let file = path.display().to_string();
-    let source = read_to_string(path).map_err(|error| SceneError::Unreadable {
-        why: error.to_string(),
-        remedy: remedy_for(path, &error),
-        file: file.clone(),
-    })?;
-    let name = path.file_stem().map_or_else(
-        || "scene".to_owned(),
-        |stem| stem.to_string_lossy().into_owned(),
-    );
-    Ok((file, name, source))
-}
-
-/// A scene's bytes at most: 10,000 bodies take two million.
-const LARGEST: u64 = 1 << 26;
-
-fn read_to_string(path: &Path) -> std::io::Result<String> {
-    let mut source = String::new();
-    let file = std::fs::File::open(path)?;
-    if file.take(LARGEST + 1).read_to_string(&mut source)? as u64 > LARGEST {
-        let why = format!("it is larger than any scene ({LARGEST} bytes)");
-        return Err(std::io::Error::other(why));
-    }
-    Ok(source)
-}
-
-fn remedy_for(path: &Path, error: &std::io::Error) -> String {
-    if error.kind() == std::io::ErrorKind::InvalidData {
-        return "a scene is a text in UTF-8".to_owned();
-    }
-    if path.is_dir() {
-        return "name a scene file, not a folder".to_owned();
-    }
-    if error.kind() != std::io::ErrorKind::NotFound {
-        return "a scene is a TOML file that you may read".to_owned();
-    }
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let scenes: Vec<String> = std::fs::read_dir(folder)
-        .into_iter()
-        .flatten()
-        .flatten()
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .filter(|name| name.ends_with(".toml") && name != "Cargo.toml")
-        .collect();
-    let wanted = path.file_name().unwrap_or_default().to_string_lossy();
-    match scenes.iter().map(String::as_str).collect::<Vec<_>>() {
-        names if names.is_empty() => "`torquescope scenes` lists the scenes there are".to_owned(),
-        mut names => {
-            names.sort_unstable();
-            table::nearest(&wanted, &names)
-        }
     }
 }

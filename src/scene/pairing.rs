@@ -122,7 +122,7 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
 }
 
 /// Whether the same effects act on both bodies, and alike, and the same method steps them.
-fn are_alike(scene: &Scene, a: usize, b: usize) -> bool {
+pub(super) fn are_alike(scene: &Scene, a: usize, b: usize) -> bool {
     let (one, other) = (&scene.bodies[a], &scene.bodies[b]);
     let mut effects = scene.effects.iter();
     one.properties == other.properties

@@ -1,27 +1,42 @@
 //! What is wrong with a scene: where, what, why and the remedy, all of it at once.
 
+use super::finding::{Finding, Severity};
 use std::fmt;
 use std::ops::Range;
 
 /// One thing wrong.
 #[derive(Clone, Debug, PartialEq)]
 struct Problem {
-    place: Place,
-    /// Where what it is about ends, if it is in the source.
-    end: usize,
+    at: At,
+    code: &'static str,
     message: String,
 }
 
-/// Where a problem is.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Place {
+/// Where something is that there is to say something of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum At {
     /// In an argument, as it was written.
     Argument(String),
-    /// At a byte offset of the source.
-    File(usize),
+    /// At these bytes of the source.
+    File(Range<usize>),
 }
 
-/// Everything wrong with one scene; printed one line each, in the order of the file.
+impl At {
+    /// Arguments first, then the file from its start.
+    pub fn order(&self) -> (Option<usize>, &str) {
+        match self {
+            Self::Argument(argument) => (None, argument),
+            Self::File(span) => (Some(span.start), ""),
+        }
+    }
+
+    /// Whether both are in one place.
+    pub fn is(&self, other: &Self) -> bool {
+        self.order() == other.order()
+    }
+}
+
+/// Everything wrong with one scene; printed in the order of the file, each with its line below.
 #[derive(Clone, Debug)]
 pub struct Problems {
     file: String,
@@ -44,46 +59,58 @@ impl Problems {
         }
     }
 
-    /// Notes a problem at a place of the source. The message is one line.
+    /// Notes a problem at a place of the source. The message is one line: what and why, and after its
+    /// last semicolon the remedy.
     pub(super) fn add(&mut self, span: &Range<usize>, message: impl Into<String>) {
-        self.add_to(Place::File(span.start), span.end, message);
+        self.add_as("invalid", span, message);
+    }
+
+    /// The same, of a kind that has a name.
+    pub(super) fn add_as(
+        &mut self,
+        code: &'static str,
+        span: &Range<usize>,
+        message: impl Into<String>,
+    ) {
+        self.add_to(At::File(span.clone()), code, message.into());
     }
 
     /// The same at a place that may be outside the source.
-    pub(super) fn add_at(&mut self, place: Place, message: impl Into<String>) {
-        self.add_to(place, 0, message);
+    pub(super) fn add_at(&mut self, at: At, message: impl Into<String>) {
+        self.add_to(at, "invalid", message.into());
     }
 
-    fn add_to(&mut self, place: Place, end: usize, message: impl Into<String>) {
+    fn add_to(&mut self, at: At, code: &'static str, message: String) {
         let problem = Problem {
-            end,
-            place: match place {
-                Place::File(offset) => Place::File(offset.min(self.source.len())),
+            at: match at {
+                At::File(span) => {
+                    let start = span.start.min(self.source.len());
+                    At::File(start..span.end.clamp(start, self.source.len()))
+                }
                 argument => argument,
             },
+            code,
             // One line, whatever the file or its keys hold.
-            message: message.into().replace(char::is_control, " "),
+            message: message.replace(char::is_control, " "),
         };
-        let same =
-            |other: &Problem| (&other.place, &other.message) == (&problem.place, &problem.message);
+        let same = |p: &Problem| p.at.is(&problem.at) && p.message == problem.message;
         if self.list.iter().any(same) {
             return;
         }
-        match self.list.len() < MOST {
-            true => self.list.push(problem),
-            false => self.more += 1,
+        match self.is_full() {
+            false => self.list.push(problem),
+            true => self.more += 1,
         }
     }
 
-    /// Adds the problems of a text that was made from this source; `place` says where its bytes came
-    /// from.
-    pub(super) fn take_from(&mut self, other: Self, place: impl Fn(Range<usize>) -> Place) {
+    /// Adds the problems of a text that was made from this source; `at` says where its bytes came from.
+    pub(super) fn take_from(&mut self, other: Self, at: impl Fn(&Range<usize>) -> At) {
         for problem in other.list {
-            let place = match problem.place {
-                Place::File(start) => place(start..problem.end),
-                argument => argument,
+            let place = match &problem.at {
+                At::File(span) => at(span),
+                argument @ At::Argument(_) => argument.clone(),
             };
-            self.add_at(place, problem.message);
+            self.add_to(place, problem.code, problem.message);
         }
         self.more += other.more;
     }
@@ -91,61 +118,63 @@ impl Problems {
     /// Adds the problems of the same source that are not there yet.
     pub(super) fn merge(&mut self, other: Self) {
         for problem in other.list {
-            self.add_at(problem.place, problem.message);
+            self.add_to(problem.at, problem.code, problem.message);
         }
         self.more += other.more;
+    }
+
+    /// Whether further problems are only counted: their messages are not worth much thought.
+    pub(super) fn is_full(&self) -> bool {
+        self.list.len() >= MOST
     }
 
     /// The text at a place, on one line and not too long to read.
     pub(super) fn text(&self, span: &Range<usize>) -> String {
         const LONGEST: usize = 60;
         let text = self.source.get(span.clone()).unwrap_or_default();
-        let words: Vec<&str> = text.split_whitespace().collect();
-        let line = words.join(" ");
+        // A character has four bytes at most, and what is between words is cut too.
+        let mut line = String::new();
+        for word in text.split_whitespace() {
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.extend(word.chars().take(LONGEST + 1));
+            if line.len() > 4 * LONGEST {
+                break;
+            }
+        }
         match line.char_indices().nth(LONGEST) {
             Some((cut, _)) => format!("{}…", &line[..cut]),
             None => line,
         }
     }
 
-    /// Whether what comes now is only counted: its message is not worth much thought.
-    pub(super) fn is_full(&self) -> bool {
-        self.list.len() >= MOST
-    }
-
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// Line and column, both from 1, the column in characters.
-    fn position(&self, offset: usize) -> (usize, usize) {
-        let mut start = offset;
-        while !self.source.is_char_boundary(start) {
-            start -= 1;
-        }
-        let before = &self.source[..start];
-        let line = before.matches('\n').count() + 1;
-        let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
-        (line, column)
+    /// The problems, those of arguments first, then in the order of the file.
+    pub fn findings(&self) -> Vec<Finding> {
+        let mut sorted: Vec<&Problem> = self.list.iter().collect();
+        sorted.sort_by(|a, b| a.at.order().cmp(&b.at.order()));
+        let finding = |problem: &Problem| {
+            Finding::at(&self.file, &self.source, &problem.at).saying(
+                Severity::Error,
+                problem.code,
+                &problem.message,
+            )
+        };
+        sorted.into_iter().map(finding).collect()
     }
 }
 
 impl fmt::Display for Problems {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut sorted: Vec<&Problem> = self.list.iter().collect();
-        sorted.sort_by_key(|problem| &problem.place);
-        for (k, problem) in sorted.into_iter().enumerate() {
+        for (k, finding) in self.findings().into_iter().enumerate() {
             if k > 0 {
                 writeln!(f)?;
             }
-            match &problem.place {
-                Place::Argument(argument) => write!(f, "{argument}: ")?,
-                Place::File(offset) => {
-                    let (line, column) = self.position(*offset);
-                    write!(f, "{}:{line}:{column}: ", self.file)?;
-                }
-            }
-            write!(f, "{}", problem.message)?;
+            write!(f, "{finding}")?;
         }
         if self.more > 0 {
             write!(f, "\n{}: and {} problems more", self.file, self.more)?;

@@ -2,11 +2,15 @@
 
 use super::effect::Written;
 use super::files::{Enclosure, Files, Library};
+use super::keys;
 use super::problem::Problems;
 use super::table::{Node, Table, nearest};
+use super::warnings::{self, Found, WARNINGS};
 use super::{Record, Scene, StateRate, Stepping, body, event, pairing};
 use crate::integrator::{self, DEFAULT_METHOD, Kind, METHODS, Method};
 use crate::trace::{STREAMS, StreamSet};
+use std::ops::Range;
+use toml::Spanned;
 use toml::de::DeTable;
 
 /// Seconds. A thousandth is what game engines and controllers use.
@@ -26,30 +30,84 @@ const MOST_ROWS: f64 = 3e7;
 /// More steps than this cannot be counted exactly in an f64 (2⁵³), nor waited for.
 const MOST_STEPS: f64 = 9e15;
 
+/// A scene, and where it is to be judged too what about it is probably wrong.
 pub(super) fn scene(
-    file: &str,
-    name: &str,
-    source: &str,
+    (file, name, source): (&str, &str, &str),
     library: &dyn Library,
-) -> Result<Scene, Problems> {
+    judge: bool,
+) -> Result<(Scene, Vec<(&'static str, Found)>), Problems> {
+    if source.len() as u64 > super::LARGEST {
+        let mut problems = Problems::new(file, "");
+        let message = format!(
+            "is larger than any scene ({} bytes); a [[swarm]] makes many bodies by one table",
+            super::LARGEST
+        );
+        problems.add(&(0..0), message);
+        return Err(problems);
+    }
     let mut problems = Problems::new(file, source);
-    let (document, errors) = DeTable::parse_recoverable(source);
+    let (document, errors) = parse(source);
     // After the first faults a parser guesses.
     for error in errors.iter().take(3) {
         let span = error.span().unwrap_or(0..0);
-        problems.add(&span, format!("not TOML: {}", error.message()));
+        problems.add_as("not-toml", &span, format!("not TOML: {}", error.message()));
     }
-    if !errors.is_empty() {
+    let Some(document) = document.filter(|_| errors.is_empty()) else {
         return Err(problems);
-    }
-    let top = Table::new(document.get_ref(), 0..0, "the scene");
+    };
+    let top = Table::top(document.get_ref(), &keys::SCENE);
     let files = Files::new(library);
     let scene = read(&top, name, source, &files, &mut problems);
+    let allowed = allowed(&top, &mut problems);
     top.check_keys(&mut problems);
     match scene {
-        Some(scene) if problems.is_empty() => Ok(scene.with(files.into_enclosures())),
+        Some(scene) if problems.is_empty() => {
+            let found = match judge {
+                true => warnings::find(&scene, &top, &allowed),
+                false => Vec::new(),
+            };
+            Ok((scene.with(files.into_enclosures()), found))
+        }
         _ => Err(problems),
     }
+}
+
+/// The document, and what about it is not TOML.
+fn parse(source: &str) -> (Option<Spanned<DeTable<'_>>>, Vec<toml::de::Error>) {
+    /// Bytes of a file of which every fault is found: a list of them takes a hundred times the memory.
+    const MOST: usize = 1 << 20;
+    if source.len() <= MOST {
+        let (document, errors) = DeTable::parse_recoverable(source);
+        return (Some(document), errors);
+    }
+    match DeTable::parse(source) {
+        Ok(document) => (Some(document), Vec::new()),
+        Err(error) => (None, vec![error]),
+    }
+}
+
+/// The warnings that the scene says are meant, each with its place.
+fn allowed<'d>(top: &Table<'d>, problems: &mut Problems) -> Vec<(Node<'d>, &'static str)> {
+    let mut allowed = Vec::new();
+    let Some(node) = top.get("allow") else {
+        return allowed;
+    };
+    for code in node.texts(problems).unwrap_or_default() {
+        let text = code.str(problems).unwrap_or_default();
+        match WARNINGS.iter().find(|warning| warning.code == text) {
+            Some(warning) => allowed.push((code, warning.code)),
+            None => {
+                let codes: Vec<&str> = WARNINGS.iter().map(|warning| warning.code).collect();
+                let message = format!(
+                    "\"{}\" is no warning; {}",
+                    problems.text(&code.span).trim_matches('"'),
+                    nearest(text, &codes)
+                );
+                problems.add(&code.span, message);
+            }
+        }
+    }
+    allowed
 }
 
 impl Scene {
@@ -105,7 +163,7 @@ fn read(
                 "the state at every step would be {rows:.1e} rows, some {:.0} GB; take a larger step, or say [record] state = 1000 (a second), or state = \"every\" if it is meant",
                 rows * 75e-9
             );
-            problems.add(top.span(), message);
+            problems.add(&clock_place(top), message);
         }
     }
     let context = event::Context {
@@ -135,6 +193,15 @@ fn read(
     };
     pairing::check(&scene, top, problems);
     Some(scene)
+}
+
+/// Where the scene says how many steps it has.
+pub(super) fn clock_place(top: &Table<'_>) -> Range<usize> {
+    let mut nowhere = Problems::new("", "");
+    let stepping = top.table("stepping", &mut nowhere);
+    let step = stepping.and_then(|table| table.get("step"));
+    let place = step.or_else(|| top.get("duration"));
+    place.map_or(0..0, |node| node.span)
 }
 
 fn duration(top: &Table<'_>, problems: &mut Problems) -> Option<f64> {
@@ -355,12 +422,14 @@ fn streams(node: &Node<'_>, problems: &mut Problems) -> Option<StreamSet> {
     Some(chosen)
 }
 
-/// The comment lines that open a file, without their marks.
+/// The comment lines that open a file, without their marks. `#:` is for editors, such as where the
+/// schema is.
 fn opening_comment(source: &str) -> String {
     let lines = source
         .lines()
         .map_while(|line| line.trim_start().strip_prefix('#'));
     let lines: Vec<&str> = lines
+        .filter(|line| !line.starts_with(':'))
         .map(|line| line.strip_prefix(' ').unwrap_or(line))
         .collect();
     lines.join("\n").trim().to_owned()

@@ -1,10 +1,15 @@
-//! A scene's text, what is to be changed in it, and the scenes that come of it: one, or one for each
-//! value of its `[sweep]`.
+//! A scene's text, from a file or from the program itself; what is to be changed in it; and the scenes that
+//! come of it: one, or one for each value of its `[sweep]`.
 
+use super::carried;
 use super::edit::{self, From, Origin, Text, quoted};
-use super::problem::{Place, Problems};
+use super::finding::{Finding, Severity};
+use super::problem::{At, Problems};
 use super::read;
-use super::{Folder, Library, Scene, SceneError};
+use super::table::nearest;
+use super::warnings::{self, Told};
+use super::{Folder, LARGEST, Library, Scene, SceneError};
+use std::io::Read as _;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
@@ -39,11 +44,46 @@ enum Change {
 /// Recordings of one sweep at most: as many as one can find one's way among.
 const MOST_SCENES: usize = 64;
 
+/// Bytes of all the texts of a sweep at most: they are held at once.
+const SWEPT: usize = 1 << 26;
+
 impl Script {
+    /// Reads a scene file, or takes a scene that the program carries, such as `@cone`.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let (file, name, source) = super::text_of(path)?;
+        let file = path.display().to_string();
+        if let Some(name) = file.strip_prefix('@') {
+            return Self::carried(name);
+        }
+        let source = read_to_string(path).map_err(|error| SceneError::Unreadable {
+            why: error.to_string(),
+            remedy: remedy_for(path, &error),
+            file: file.clone(),
+        })?;
+        let name = path.file_stem().map_or_else(
+            || "scene".to_owned(),
+            |stem| stem.to_string_lossy().into_owned(),
+        );
         let folder = Folder(path.parent().map(Path::to_owned).unwrap_or_default());
         Ok(Self::new(&file, &name, &source).with_files(folder))
+    }
+
+    fn carried(name: &str) -> Result<Self, SceneError> {
+        let file = format!("@{name}");
+        if let Some(scene) = carried::find(name) {
+            let script = Self::new(&file, scene.name, scene.text);
+            return Ok(script.with_files(scene.enclosures()));
+        }
+        let names: Vec<String> = carried::CARRIED
+            .iter()
+            .map(|scene| format!("@{}", scene.name))
+            .collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let remedy = nearest(&file, &names);
+        Err(SceneError::Unreadable {
+            file,
+            why: "no scene of this name is carried".to_owned(),
+            remedy,
+        })
     }
 
     /// A text that names no files. `file` is how messages call it, `name` how recordings are called.
@@ -75,6 +115,11 @@ impl Script {
 
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// As it was written, without what is to be changed.
+    pub fn text(&self) -> &str {
+        &self.source
     }
 
     /// Whether anything is to be changed.
@@ -155,18 +200,39 @@ impl Script {
     /// The scene as it stands, its sweep looked at and left aside.
     pub fn scene(&self) -> Result<Scene, Problems> {
         let text = self.edited()?;
-        let scene = self.read(&text)?;
-        self.swept(&text)?;
+        let (scene, _) = self.read(&text, false)?;
+        self.swept(&text, false)?;
         Ok(scene)
     }
 
     /// What there is to run: the scene, or one for each value of its sweep.
     pub fn scenes(&self) -> Result<Vec<Scene>, Problems> {
+        let all = self.all(false)?;
+        Ok(all.into_iter().map(|(scene, _)| scene).collect())
+    }
+
+    /// The same, judged: what is legal and probably wrong with any of them, but for what the scene says is
+    /// meant. Of a sweep each place is told once.
+    pub fn judge(&self) -> Result<(Vec<Scene>, Vec<Finding>), Problems> {
+        let (scenes, told) = self.all(true)?.into_iter().unzip();
+        let finding = |(code, at, message): (&'static str, At, String)| {
+            let finding = Finding::at(&self.file, &self.source, &at);
+            finding.saying(Severity::Warning, code, &message)
+        };
+        let told = warnings::together(told);
+        Ok((scenes, told.into_iter().map(finding).collect()))
+    }
+
+    fn all(&self, judge: bool) -> Result<Vec<(Scene, Told)>, Problems> {
         let text = self.edited()?;
-        let mut scene = self.read(&text)?;
+        let (mut scene, told) = self.read(&text, judge)?;
         scene.variant = self.label();
-        let swept = self.swept(&text)?;
-        Ok(if swept.is_empty() { vec![scene] } else { swept })
+        let swept = self.swept(&text, judge)?;
+        Ok(if swept.is_empty() {
+            vec![(scene, told)]
+        } else {
+            swept
+        })
     }
 
     fn problems(&self) -> Problems {
@@ -176,7 +242,8 @@ impl Script {
     fn edited(&self) -> Result<Text, Problems> {
         let mut text = Text::new(&self.source);
         let mut problems = self.problems();
-        if self.changes.is_empty() || edit::parse(&self.source).is_err() {
+        let too_large = self.source.len() as u64 > LARGEST;
+        if self.changes.is_empty() || too_large || edit::parse(&self.source).is_err() {
             // The reader says what is wrong with it.
             return Ok(text);
         }
@@ -191,7 +258,7 @@ impl Script {
                 }
             };
             if let Err(why) = done {
-                problems.add_at(Place::Argument(argument.clone()), why);
+                problems.add_at(At::Argument(argument.clone()), why);
             }
         }
         // Last, because events are called by their place in the list.
@@ -204,30 +271,45 @@ impl Script {
         }
     }
 
-    fn read(&self, text: &Text) -> Result<Scene, Problems> {
-        read::scene(&self.file, &self.name, text.as_str(), &*self.files).map_err(|problems| {
-            let mut here = self.problems();
-            here.take_from(problems, |range| self.whence(text.origin_of(range)));
-            here
-        })
+    fn read(&self, text: &Text, judge: bool) -> Result<(Scene, Told), Problems> {
+        let named = (self.file.as_str(), self.name.as_str(), text.as_str());
+        match read::scene(named, &*self.files, judge) {
+            Ok((scene, found)) => Ok((scene, Told::new(found, |span| self.whence(text, span)))),
+            Err(problems) => {
+                let mut here = self.problems();
+                here.take_from(problems, |span| self.whence(text, span));
+                Err(here)
+            }
+        }
     }
 
-    fn place(&self, text: &Text, offset: usize) -> Place {
-        self.whence(text.origin(offset))
-    }
-
-    fn whence(&self, origin: Origin) -> Place {
-        match origin {
-            Origin::File(offset) => Place::File(offset),
-            Origin::Argument(k) => Place::Argument(self.changes[k].1.clone()),
+    /// Where what stands there in the edited text came from.
+    fn whence(&self, text: &Text, span: &Range<usize>) -> At {
+        if *span == (0..0) {
+            // About the scene as a whole.
+            return At::File(0..0);
+        }
+        match text.origin_of(span.clone()) {
+            Origin::Argument(k) => At::Argument(self.changes[k].1.clone()),
+            Origin::File(start) => {
+                // By the last byte, because behind it something else may have been put in; where all of it is
+                // there for what was put into it, only the start is known.
+                let last = text.origin(span.end.saturating_sub(1));
+                let whole = !span.is_empty() && text.origin(span.start) == Origin::File(start);
+                let end = match last {
+                    Origin::File(last) if whole && last >= start => last + 1,
+                    _ => start,
+                };
+                At::File(start..end)
+            }
         }
     }
 
     /// The scene at each value of its sweep; none where it has none.
-    fn swept(&self, text: &Text) -> Result<Vec<Scene>, Problems> {
+    fn swept(&self, text: &Text, judge: bool) -> Result<Vec<(Scene, Told)>, Problems> {
         let mut problems = self.problems();
         let mut wrong = |span: &Range<usize>, why: String| {
-            problems.add_at(self.place(text, span.start), why);
+            problems.add_at(self.whence(text, span), why);
         };
         if !text.as_str().contains("sweep") {
             return Ok(Vec::new());
@@ -257,29 +339,28 @@ impl Script {
             return Err(problems);
         }
         let bytes = text.as_str().len().saturating_mul(count.unwrap_or(0));
-        if bytes as u64 > super::LARGEST {
+        if bytes > SWEPT {
             wrong(
                 &node.span(),
                 format!(
-                    "the sweep's scenes together would be larger than any scene ({} bytes)",
-                    super::LARGEST
+                    "the sweep's scenes together would have {bytes} bytes, more than the {SWEPT} that are held at once; take fewer values, or a [[swarm]] in place of many bodies"
                 ),
             );
             return Err(problems);
         }
-        let mut scenes: Vec<Scene> = Vec::new();
+        let mut scenes: Vec<(Scene, Told)> = Vec::new();
         for k in 0..count.unwrap_or(0) {
             let point = point(&axes, k);
-            match self.at(text, &point) {
+            match self.at(text, &point, judge) {
                 Err(of_this) => problems.merge(of_this),
-                Ok(scene) => {
-                    let same = |other: &&Scene| other.fingerprint == scene.fingerprint;
+                Ok((scene, told)) => {
+                    let same = |(other, _): &&(Scene, Told)| other.fingerprint == scene.fingerprint;
                     if let (Some(_), Some((_, value))) = (scenes.iter().find(same), point.last()) {
                         let label = scene.variant.as_deref().unwrap_or_default();
                         let why = format!("the sweep has {label} twice");
-                        problems.add_at(self.place(text, value.start), why);
+                        problems.add_at(self.whence(text, value), why);
                     }
-                    scenes.push(scene);
+                    scenes.push((scene, told));
                 }
             }
         }
@@ -290,15 +371,20 @@ impl Script {
     }
 
     /// The scene with these values, and no sweep.
-    fn at(&self, text: &Text, point: &[(&Axis, &Range<usize>)]) -> Result<Scene, Problems> {
+    fn at(
+        &self,
+        text: &Text,
+        point: &[(&Axis, &Range<usize>)],
+        judge: bool,
+    ) -> Result<(Scene, Told), Problems> {
         let mut one = text.clone();
         let mut label = Vec::from_iter(self.label());
         for (axis, value) in point {
             let words = &text.as_str()[(*value).clone()];
             label.push(format!("{} = {}", axis.path, one_line(words)));
-            if let Err(why) = one.set(&axis.path, words, text.place(value.start)) {
+            if let Err(why) = one.set(&axis.path, words, text.place(value)) {
                 let mut problems = self.problems();
-                problems.add_at(self.place(text, axis.key.start), why);
+                problems.add_at(self.whence(text, &axis.key), why);
                 return Err(problems);
             }
         }
@@ -307,9 +393,9 @@ impl Script {
             problems.add(&(0..0), why);
             return Err(problems);
         }
-        let mut scene = self.read(&one)?;
+        let (mut scene, told) = self.read(&one, judge)?;
         scene.variant = Some(label.join(", "));
-        Ok(scene)
+        Ok((scene, told))
     }
 }
 
@@ -416,5 +502,48 @@ fn toml_value(value: &str) -> Result<String, String> {
     match word {
         true => Ok(quoted(value)),
         false => Err(format!("the value is not TOML: {}", error.message().trim())),
+    }
+}
+
+fn read_to_string(path: &Path) -> std::io::Result<String> {
+    let mut source = String::new();
+    let file = std::fs::File::open(path)?;
+    // By what the file says of itself before a byte of it is read; a pipe says nothing.
+    let said = file.metadata()?.len();
+    if said > LARGEST || file.take(LARGEST + 1).read_to_string(&mut source)? as u64 > LARGEST {
+        let why = format!("it is larger than any scene ({LARGEST} bytes)");
+        return Err(std::io::Error::other(why));
+    }
+    Ok(source)
+}
+
+fn remedy_for(path: &Path, error: &std::io::Error) -> String {
+    if error.kind() == std::io::ErrorKind::InvalidData {
+        return "a scene is a text in UTF-8".to_owned();
+    }
+    if path.is_dir() {
+        return "name a scene file, not a folder".to_owned();
+    }
+    if error.kind() != std::io::ErrorKind::NotFound {
+        return "a scene is a TOML file that you may read".to_owned();
+    }
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let scenes: Vec<String> = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .filter(|name| name.ends_with(".toml") && name != "Cargo.toml")
+        .collect();
+    let wanted = path.file_name().unwrap_or_default().to_string_lossy();
+    match scenes.iter().map(String::as_str).collect::<Vec<_>>() {
+        names if names.is_empty() => "`torquescope scenes` lists the scenes there are".to_owned(),
+        mut names => {
+            names.sort_unstable();
+            nearest(&wanted, &names)
+        }
     }
 }

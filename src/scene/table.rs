@@ -1,21 +1,31 @@
 //! A TOML table read key by key: types checked, unknown keys named, every problem kept.
 //!
-//! Deserialising by derive would stop at the first problem; a scene reports all of them.
+//! Deserialising by derive would stop at the first problem; a scene reports all of them. Which keys a
+//! table has stands in [`super::keys`].
 
+use super::keys::{Key, Keys, Takes};
 use super::problem::Problems;
 use nalgebra::Vector3;
 use std::cell::RefCell;
 use std::ops::Range;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeInteger, DeTable, DeValue};
 
-/// A table, and which of its keys have been asked for.
+/// A table of a scene.
 pub(super) struct Table<'d> {
     entries: &'d DeTable<'d>,
     span: Range<usize>,
     /// As the messages name it, such as `[effects]`.
     name: String,
-    known: RefCell<Vec<&'static str>>,
+    known: Known,
+}
+
+/// Which keys a table may have.
+enum Known {
+    /// Those that are declared.
+    Declared(&'static Keys),
+    /// Those that are asked for: what a table of the program (solids, effects) says they take.
+    Asked(RefCell<Vec<&'static str>>),
 }
 
 /// The value of a key.
@@ -24,15 +34,26 @@ pub(super) struct Node<'d> {
     pub key: &'static str,
     pub span: Range<usize>,
     value: &'d DeValue<'d>,
+    takes: Option<&'static Takes>,
 }
 
 impl<'d> Table<'d> {
+    /// A table whose keys are those that the reader asks for.
     pub fn new(entries: &'d DeTable<'d>, span: Range<usize>, name: impl Into<String>) -> Self {
+        Self::with(entries, span, name.into(), Known::Asked(RefCell::default()))
+    }
+
+    /// The document.
+    pub fn top(entries: &'d DeTable<'d>, keys: &'static Keys) -> Self {
+        Self::with(entries, 0..0, keys.name.to_owned(), Known::Declared(keys))
+    }
+
+    fn with(entries: &'d DeTable<'d>, span: Range<usize>, name: String, known: Known) -> Self {
         Self {
             entries,
             span,
-            name: name.into(),
-            known: RefCell::default(),
+            name,
+            known,
         }
     }
 
@@ -46,17 +67,37 @@ impl<'d> Table<'d> {
 
     /// The value of a key, which from now on is known; `None` where it is absent.
     pub fn get(&self, key: &'static str) -> Option<Node<'d>> {
-        let mut known = self.known.borrow_mut();
-        if !known.contains(&key) {
-            known.push(key);
-        }
-        drop(known);
+        let declared = self.declared(key);
         let value: &'d Spanned<DeValue<'d>> = self.entries.get(key)?;
         Some(Node {
             key,
             span: value.span(),
             value: value.get_ref(),
+            takes: declared.map(|key| &key.takes),
         })
+    }
+
+    /// What is declared of a key that is asked for.
+    fn declared(&self, key: &'static str) -> Option<&'static Key> {
+        match &self.known {
+            Known::Declared(keys) => {
+                debug_assert!(
+                    keys.has(key),
+                    "`{key}` of {} is not declared in scene/keys.rs",
+                    keys.name
+                );
+                #[cfg(test)]
+                super::keys_tests::asked(keys, key);
+                keys.find(key)
+            }
+            Known::Asked(known) => {
+                let mut known = known.borrow_mut();
+                if !known.contains(&key) {
+                    known.push(key);
+                }
+                None
+            }
+        }
     }
 
     pub fn has(&self, key: &str) -> bool {
@@ -73,7 +114,7 @@ impl<'d> Table<'d> {
         let node = self.get(key);
         if node.is_none() {
             let message = format!("{} lacks `{key}`; add {what}", self.name);
-            problems.add(&self.span, message);
+            problems.add_as("missing-key", &self.span, message);
         }
         node
     }
@@ -95,33 +136,37 @@ impl<'d> Table<'d> {
         };
         let mut tables = Vec::new();
         for item in items.iter() {
-            let item = Node {
-                key,
-                span: item.span(),
-                value: item.get_ref(),
-            };
-            tables.extend(item.table(format!("[[{key}]]"), problems));
+            tables.extend(node.item(item).table(format!("[[{key}]]"), problems));
         }
         tables
     }
 
-    /// Names every key that nobody asked for, with the nearest one that is known; whether there is one.
-    /// Call it last.
+    /// Names every key that is not known, with the nearest one that is; whether there is one. Call it
+    /// last.
     pub fn check_keys(&self, problems: &mut Problems) -> bool {
-        let known = self.known.borrow();
         let mut unknown = false;
+        let is_known = |name: &str| match &self.known {
+            Known::Declared(keys) => keys.has(name),
+            Known::Asked(known) => known.borrow().contains(&name),
+        };
         for (key, _) in self.entries.iter() {
             let name = key.get_ref().as_ref();
-            if !known.contains(&name) {
-                let remedy = nearest(name, &known);
-                let message = format!(
-                    "unknown key `{}` in {}; {remedy}",
-                    shortened(name),
-                    self.name
-                );
-                problems.add(&key.span(), message);
-                unknown = true;
+            if is_known(name) {
+                continue;
             }
+            let known = match &self.known {
+                _ if problems.is_full() => Vec::new(),
+                Known::Declared(keys) => keys.names(),
+                Known::Asked(known) => known.borrow().clone(),
+            };
+            let message = format!(
+                "unknown key `{}` in {}; {}",
+                shortened(name),
+                self.name,
+                nearest(name, &known)
+            );
+            problems.add_as("unknown-key", &key.span(), message);
+            unknown = true;
         }
         unknown
     }
@@ -133,15 +178,15 @@ pub(super) fn nearest(name: &str, known: &[&str]) -> String {
     const LONGEST: usize = 64;
     /// As many as one reads.
     const MOST: usize = 16;
-    /// So many are compared: bodies may have ten thousand names.
-    const COMPARED: usize = 1_000;
+    /// As many as are compared: a scene may have a hundred thousand names.
+    const COMPARED: usize = 2_000;
     let length = name.chars().count();
     // A slip of the hand: up to a third of the letters, by edits or swaps.
     let close = |(distance, _): &(usize, &&str)| 3 * distance <= length.max(3);
     let distances = known
         .iter()
-        .filter(|c| length <= LONGEST && c.len() <= LONGEST)
         .take(COMPARED)
+        .filter(|c| length <= LONGEST && c.len() <= LONGEST)
         .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate));
     if let Some((_, best)) = distances
         .filter(close)
@@ -169,8 +214,9 @@ impl<'d> Node<'d> {
     }
 
     fn wrong(&self, wanted: &str, problems: &mut Problems) {
-        let message = format!("is {}, not {wanted}", with_article(self.value.type_str()));
-        self.problem(message, problems);
+        let wrong = with_article(self.value.type_str());
+        let message = format!("{} is {wrong}, not {wanted}", self.text(problems));
+        problems.add_as("wrong-type", &self.span, message);
     }
 
     pub fn is_text(&self) -> bool {
@@ -256,12 +302,7 @@ impl<'d> Node<'d> {
         };
         let mut numbers = [0.0; N];
         for (slot, item) in numbers.iter_mut().zip(array.iter()) {
-            let item = Node {
-                key: self.key,
-                span: item.span(),
-                value: item.get_ref(),
-            };
-            *slot = item.number(unit, problems)?;
+            *slot = self.item(item).number(unit, problems)?;
         }
         Some(numbers)
     }
@@ -278,14 +319,8 @@ impl<'d> Node<'d> {
         };
         let mut rows = Vec::with_capacity(3);
         for item in array.iter() {
-            let row = Node {
-                key: self.key,
-                span: item.span(),
-                value: item.get_ref(),
-            };
-            rows.push(nalgebra::RowVector3::from(
-                row.numbers::<3>(unit, problems)?,
-            ));
+            let row = self.item(item).numbers::<3>(unit, problems)?;
+            rows.push(nalgebra::RowVector3::from(row));
         }
         Some(nalgebra::Matrix3::from_rows(&rows))
     }
@@ -298,12 +333,7 @@ impl<'d> Node<'d> {
             self.wrong("a list of texts in quotes", problems);
             return None;
         };
-        let node = |item: &'d Spanned<DeValue<'d>>| Node {
-            key: self.key,
-            span: item.span(),
-            value: item.get_ref(),
-        };
-        Some(texts.iter().map(node).collect())
+        Some(texts.iter().map(|item| self.item(item)).collect())
     }
 
     /// A whole number from `least` to `most`.
@@ -329,12 +359,16 @@ impl<'d> Node<'d> {
         };
         let mut tables = Vec::with_capacity(array.len());
         for (k, item) in (1..).zip(array.iter()) {
-            let Some(entries) = item.get_ref().as_table() else {
+            if !item.get_ref().is_table() {
                 let what = with_article(item.get_ref().type_str());
-                problems.add(&item.span(), format!("{name} is {what}, not a table"));
+                problems.add_as(
+                    "wrong-type",
+                    &item.span(),
+                    format!("{name} is {what}, not a table"),
+                );
                 return None;
-            };
-            tables.push(Table::new(entries, item.span(), format!("{name} ({k})")));
+            }
+            tables.extend(self.item(item).table(format!("{name} ({k})"), problems));
         }
         Some(tables)
     }
@@ -344,16 +378,36 @@ impl<'d> Node<'d> {
             self.wrong("a table", problems);
             return None;
         };
-        Some(Table::new(entries, self.span, name))
+        Some(match self.takes.and_then(Takes::table) {
+            Some(keys) => Table::with(entries, self.span, name, Known::Declared(keys)),
+            None => Table::new(entries, self.span, name),
+        })
+    }
+
+    /// An entry of the list that this is.
+    fn item(&self, item: &'d Spanned<DeValue<'d>>) -> Node<'d> {
+        Node {
+            key: self.key,
+            span: item.span(),
+            value: item.get_ref(),
+            takes: self.takes.and_then(Takes::entry),
+        }
     }
 
     /// The only entry of a one-key table such as `{ body = […] }`, under this node's own key.
     pub fn only_entry(&self) -> Option<(&'d str, Node<'d>)> {
         let (name, _, value) = self.choice()?;
+        let keys = self.takes.and_then(Takes::table);
+        let declared = keys.and_then(|keys| keys.find(name));
+        #[cfg(test)]
+        if let (Some(keys), Some(key)) = (keys, declared) {
+            super::keys_tests::asked(keys, key.name);
+        }
         let node = Node {
             key: self.key,
             span: value.span(),
             value: value.get_ref(),
+            takes: declared.map(|key| &key.takes),
         };
         Some((name, node))
     }
@@ -370,15 +424,21 @@ fn as_number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(float) => float.as_str().parse().ok(),
         DeValue::Integer(integer) => {
-            // Of any length: what an i128 does not hold is a number all the same.
             let whole = i128::from_str_radix(integer.as_str(), integer.radix());
-            whole.map_or_else(
-                |_| integer.as_str().parse().ok(),
-                |whole| Some(whole as f64),
-            )
+            whole.map_or_else(|_| beyond(integer), |whole| Some(whole as f64))
         }
         _ => None,
     }
+}
+
+/// Of any length: what an i128 does not hold is a number all the same.
+fn beyond(integer: &DeInteger<'_>) -> Option<f64> {
+    let radix = integer.radix();
+    if radix == 10 {
+        return integer.as_str().parse().ok();
+    }
+    let digit = |x: f64, c: char| Some(x * f64::from(radix) + f64::from(c.to_digit(radix)?));
+    integer.as_str().chars().try_fold(0.0, digit)
 }
 
 /// Not longer than one reads.
@@ -396,4 +456,39 @@ fn with_article(noun: &str) -> String {
         "a"
     };
     format!("{article} {noun}")
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::Scene;
+
+    #[test]
+    fn integers_of_any_length_and_base_are_the_numbers_they_are() {
+        let long = format!("0x{}e5", "1".repeat(40));
+        // 0x11…1 (40 ones) times 256 and 0xe5, in binary floating point: (16⁴⁰ - 1)/15 · 256 to a rounding or two.
+        let value = (16.0_f64.powi(40) / 15.0) * 256.0;
+        for (text, wanted) in [
+            ("12", 12.0),
+            ("0x1f", 31.0),
+            ("0b101", 5.0),
+            ("0o17", 15.0),
+            ("1_000", 1000.0),
+            ("0x7fff_ffff", 2_147_483_647.0),
+            (
+                "123456789012345678901234567890123456789012345",
+                1.234_567_890_123_456_8e44,
+            ),
+            (long.as_str(), value),
+        ] {
+            let source = format!(
+                "duration = 1\n[[body]]\nname = \"b\"\nmass = 1\ninertia = [1, 1, 1]\nposition = [{text}, 0, 0]\n"
+            );
+            let scene = Scene::parse("s", "s", &source).unwrap_or_else(|why| panic!("{why}"));
+            let x = scene.bodies[0].position_w.x;
+            assert!(
+                (x / wanted - 1.0).abs() < 1e-15,
+                "{text} is {x}, not {wanted}"
+            );
+        }
+    }
 }
