@@ -102,8 +102,7 @@ impl OneStep for Rk4 {
     }
 }
 
-/// All four stages, under forces that stay. Then the acceleration does, and the stages of x and v sum
-/// to `x + v h + a h²/2`: what they would be is not computed.
+/// All four stages, under forces that stay.
 impl Kernel for Rk4 {
     #[inline(always)]
     fn stepped(self, h: f64, lane: usize, forces: impl Forces, body: &Inertial, y: State) -> State {
@@ -112,11 +111,7 @@ impl Kernel for Rk4 {
         let k3 = rate(lane, forces, body, normalised(along(y, 0.5 * h, k2)));
         let k4 = rate(lane, forces, body, normalised(along(y, h, k3)));
         let sum = along(along(along(y, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3);
-        State {
-            x_w: y.x_w + (y.v_w + k1.v_w * (0.5 * h)) * h,
-            v_w: y.v_w + k1.v_w * h,
-            ..normalised(along(sum, h / 6.0, k4))
-        }
+        normalised(along(sum, h / 6.0, k4))
     }
 }
 
