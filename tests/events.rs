@@ -117,7 +117,7 @@ fn a_profile_gives_its_integral() {
             for method in [
                 "method = \"dop853\"\ntolerance = 1e-15\nstep = 0.01",
                 // Simpson's rule for half a sine, in steps that the other body's torque cuts: its error is
-                // (π h/T)⁴/180, 1e-14 here.
+                // (π h/T)⁴/2880, below a rounding; what is left are the roundings of 10⁴ additions.
                 "method = \"rk4\"\nstep = 5e-5",
             ] {
                 let sample = &end(&source(method, &what))[0];

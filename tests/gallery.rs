@@ -271,7 +271,6 @@ fn gravity_holds_one_satellite_swings_another_and_tips_the_third() {
         (a, b) = (0.5 * (a + b), (a * b).sqrt());
     }
     let half = std::f64::consts::PI / omega / a;
-    let half = half / 1.002_526_106_268_56;
     assert!(
         (2.0 * half - 4.5).abs() < 0.05,
         "the text says 4.5: {}",

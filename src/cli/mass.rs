@@ -4,6 +4,7 @@ use super::{Wrong, print};
 use crate::mass::links::{self, Description, Link, LinksError, Verdict};
 use crate::mass::mesh::{self, CubeRow, Cubes, Format, Polyhedron};
 use crate::mass::solids::Solid;
+use crate::mass::tensor::check_physical;
 use crate::math::symmetric_eigen;
 use crate::record;
 use crate::trace::{short, short_numbers, short_vector};
@@ -81,6 +82,12 @@ fn mesh(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let body = mesh::read(&arguments.file, arguments.scale)
         .map_err(|why| Wrong(format!("{}: {why}", arguments.file.display())))?;
+    check_physical(&(body.integrals().tensor * arguments.density)).map_err(|why| {
+        Wrong(format!(
+            "{}: is too thin or too large for 64-bit numbers to tell its inertia: {why}",
+            arguments.file.display()
+        ))
+    })?;
     let ns: Vec<usize> = arguments.cubes.iter().map(|&n| usize::from(n)).collect();
     let report = MeshReport::new(arguments, &body, &mesh::orders(&body, &ns));
     match arguments.json {

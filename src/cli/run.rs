@@ -227,10 +227,8 @@ fn place(arguments: &Arguments, again: bool, scene: &Scene) -> anyhow::Result<Pa
 }
 
 pub(super) fn must_not_be_input(path: &Path, input: &Path) -> anyhow::Result<()> {
-    let same = match (path.canonicalize(), input.canonicalize()) {
-        (Ok(path), Ok(input)) => path == input,
-        _ => false,
-    };
+    // By another name too: a link of either kind.
+    let same = same_file::is_same_file(path, input).unwrap_or(false);
     // A scene is told apart by what it holds, where it would be written over.
     if same && record::is_recording(input) {
         return Err(Wrong(format!(
@@ -347,7 +345,7 @@ fn texts(scenes: &[Scene], plans: &[Option<Plan>], ran: &[Ran], summary: &Summar
         }
         text += "\n\n";
     }
-    let path = summary.path.display();
+    let path = print::argument(&summary.path);
     let several = match scenes.len() {
         1 => String::new(),
         n => format!(", {n} recordings, to be chosen between in the panel on the left"),

@@ -87,6 +87,12 @@ impl Spec for Planet {
                 body.name()
             ));
         }
+        if body.is_held_off_centre() {
+            return Err(format!(
+                "a pivot holds {} off its centre of mass, where the planet's pull turns it more than the gradient does; hold it at its centre, or write the pull as gravity",
+                body.name()
+            ));
+        }
         Ok(())
     }
 

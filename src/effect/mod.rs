@@ -74,6 +74,8 @@ pub trait Described {
     fn reference_w(&self) -> Vector3<f64>;
     /// Whether a pivot holds it.
     fn is_held(&self) -> bool;
+    /// Whether that pivot is somewhere else than its centre of mass.
+    fn is_held_off_centre(&self) -> bool;
     /// Whether it has axes that no torque turns it about, and others that one does.
     fn has_immovable_axes(&self) -> bool;
 }
@@ -121,6 +123,10 @@ impl Described for Plain {
     }
 
     fn is_held(&self) -> bool {
+        false
+    }
+
+    fn is_held_off_centre(&self) -> bool {
         false
     }
 

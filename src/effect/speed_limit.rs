@@ -7,8 +7,8 @@
 //! No force and no law of motion: what was too fast loses momentum and energy at once, so a motion that
 //! meets the limit is another motion, and depends on the step. It is here to show that. Engines clamp by
 //! default: PhysX at 100 rad/s (`PxRigidDynamic::setMaxAngularVelocity`; 7 before version 4), Jolt at 47.1 rad/s (¼ π 60:
-//! an eighth of a turn in a step of 1/60 s) and 500 m/s (`BodyCreationSettings`), Bullet at ¼ π a step
-//! (`ANGULAR_MOTION_THRESHOLD`). It means something only with steps that are given: methods that choose their
+//! an eighth of a turn in a step of 1/60 s) and 500 m/s (`BodyCreationSettings`), Bullet at ½ π a step
+//! (`MAX_ANGVEL`; its ¼ π, `ANGULAR_MOTION_THRESHOLD`, bounds the turn and not the velocity). It means something only with steps that are given: methods that choose their
 //! own, closed forms and `accuracy` refuse it. A method that carries something beside the state sets out
 //! anew from what is left. (Engines clamp between the step's change of velocity and its change of place; here the
 //! step that meets the limit is still turned by what it had, the same by every method.)

@@ -533,4 +533,32 @@ mod tests {
             assert!((60..570).contains(&met), "{name}: {met} rays met it");
         }
     }
+
+    /// However far the eye, and at angles of a few degrees to the surface.
+    #[test]
+    fn a_torus_is_met_from_far_away_and_at_a_slant() {
+        /// Some ten roundings of the way, there and back.
+        const BOUND: f64 = 2e-15;
+        let torus = solid("torus", &[1.0, 0.2]);
+        for away in [1e2, 1e3, 1e6, 1e9] {
+            let hit = torus.ray(&ray([away, 0.0, 0.0], [-1.0, 0.0, 0.0]));
+            let hit = hit.unwrap_or_else(|| panic!("missed from {away} m"));
+            let off = (hit.t - (away - 1.2)).abs();
+            assert!(off < BOUND * away + 1e-12, "{away}: {off:e}");
+        }
+        let slant = ray(
+            [
+                -2.977_081_983_364_875,
+                0.334_712_115_004_409_97,
+                -0.157_957_793_076_344_9,
+            ],
+            [
+                0.961_408_436_472_245,
+                -0.052_662_917_311_768_316,
+                -0.270_037_840_718_25,
+            ],
+        );
+        // By steps of 1e-7 and bisection, elsewhere.
+        assert!((torus.ray(&slant).unwrap().t - 2.559_899).abs() < 1e-5);
+    }
 }

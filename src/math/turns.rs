@@ -6,7 +6,7 @@
 
 use super::dd::{Dd, MAGIC, two_prod, two_sum};
 
-/// `(sin 2πx, cos 2πx)` for |x| < 2⁴⁹, each to one unit in the last place.
+/// `(sin 2πx, cos 2πx)` for |x| < 2⁴⁹, to 1.7 and 1 units in the last place.
 ///
 /// ```text
 /// k = round(4x)   r = x - k/4 (exact)   z = r² ≤ 1/64
@@ -66,7 +66,7 @@ const COSINE: [f64; 6] = [
     -1.701_221_523_203_635_2,
 ];
 
-/// `e^{-x}` for x ≥ 0, to 1 unit in the last place; from x = 708 on that of 708, 3e-308.
+/// `e^{-x}` for x ≥ 0, to 1.1 units in the last place; from x = 708 on that of 708, 3e-308.
 ///
 /// ```text
 /// n = round(x / ln 2)   r = x - n ln 2, |r| ≤ ln 2/2   e^{-x} = 2⁻ⁿ (1 - r + r² E(r))

@@ -411,9 +411,19 @@ fn bounds(seen: &[&Subject], size: f64) -> (Vector3<f64>, f64) {
 
 /// The height of the ground grid: under the lowest body as it starts.
 fn floor(seen: &[&Subject]) -> f64 {
+    // Bodies of a swarm are alike: one of them says how far each may reach down.
+    let like = |a: &&Subject, b: &&Subject| a.swarm.is_some() && a.swarm == b.swarm;
+    let lowest = |alike: &[&Subject]| match alike {
+        [alone] => mesh::lowest(alone),
+        many => {
+            let reach = many.first().map_or(0.0, |first| mesh::radius(first));
+            let heights = many.iter().map(|s| s.start.position_w.y - reach);
+            heights.fold(f64::INFINITY, f64::min)
+        }
+    };
     let low = seen
-        .iter()
-        .map(|s| mesh::lowest(s))
+        .chunk_by(like)
+        .map(lowest)
         .fold(f64::INFINITY, f64::min);
     if low.is_finite() { low } else { 0.0 }
 }

@@ -3,6 +3,10 @@
 use super::provenance::{Parts, Provenance};
 use super::rrd::APPLICATION;
 use super::{MAGIC, RERUN_VERSION};
+use re_protos::common::v1alpha1::Compression;
+use re_protos::log_msg::v1alpha1::ArrowMsg;
+use re_protos::log_msg::v1alpha1::log_msg::Msg;
+use rerun::external::arrow::ipc::root_as_message;
 use rerun::external::re_log_encoding::{
     CachingApplicationIdInjector, Decodable as _, DecoderTransport, MessageHeader, MessageKind,
     StreamHeader, ToApplication as _,
@@ -83,6 +87,9 @@ impl Messages {
             if message.byte_size_uncompressed() > most {
                 return Err("a message in it is longer than it can be".to_owned());
             }
+            if let Msg::ArrowMsg(message) = &message {
+                must_be_whole(message)?;
+            }
             let message = message.to_application((&mut names, None));
             message.map_err(|error| error.to_string())
         });
@@ -125,6 +132,39 @@ impl Messages {
             };
         }
     }
+}
+
+/// Whether the parts of an Arrow message say no more of their lengths than there is: the decoder asks for
+/// as much memory as they say.
+fn must_be_whole(message: &ArrowMsg) -> Result<(), String> {
+    let size = usize::try_from(message.uncompressed_size).unwrap_or(usize::MAX);
+    let mut unpacked = Vec::new();
+    let mut rest: &[u8] = match message.compression() {
+        Compression::Lz4 => {
+            unpacked.resize(size, 0);
+            lz4_flex::block::decompress_into(&message.payload, &mut unpacked)
+                .map_err(|error| format!("a message in it cannot be unpacked: {error}"))?;
+            &unpacked
+        }
+        _ => &message.payload,
+    };
+    let cut = || "a message in it says that it is longer than it is".to_owned();
+    // Each part: -1, the length of its head, the head, the body (Arrow's IPC streaming format).
+    while let Some((mark, after)) = rest.split_first_chunk::<4>() {
+        let (length, after) = match *mark {
+            [0xff, 0xff, 0xff, 0xff] => after.split_first_chunk::<4>().ok_or_else(cut)?,
+            _ => (mark, after),
+        };
+        let length = usize::try_from(i32::from_le_bytes(*length)).map_err(|_| cut())?;
+        if length == 0 {
+            break;
+        }
+        let (head, after) = after.split_at_checked(length).ok_or_else(cut)?;
+        let head = root_as_message(head).map_err(|error| error.to_string())?;
+        let body = usize::try_from(head.bodyLength()).map_err(|_| cut())?;
+        rest = after.get(body..).ok_or_else(cut)?;
+    }
+    Ok(())
 }
 
 /// Where the last message ends of which every byte is there, and whether the end is marked after it.

@@ -25,7 +25,12 @@ pub struct Scales {
 
 impl Scales {
     pub fn new(subjects: &[Subject], expected: &Sizes) -> Self {
-        let size = typical(subjects.iter().map(mesh::radius));
+        // Bodies of a swarm are alike: one of them is measured.
+        let like = |a: &Subject, b: &Subject| a.swarm.is_some() && a.swarm == b.swarm;
+        let size = typical(subjects.chunk_by(like).flat_map(|alike| {
+            let radius = mesh::radius(&alike[0]);
+            std::iter::repeat_n(radius, alike.len())
+        }));
         let factor = |drawn: &Drawn| nice(drawn.reach * size / (drawn.size)(expected));
         Self {
             factors: DRAWN.iter().map(factor).collect(),

@@ -58,8 +58,8 @@ impl Scene {
     }
 }
 
-/// What acts on some bodies of one block, of the effects that are on: on those of `members` whose index
-/// is `first` and their lane.
+/// What acts on some bodies of one block, of the effects that are on. A member's body has the index `first` and
+/// its lane.
 pub(crate) fn lasting(scene: &Scene, first: usize, members: &[Member<'_>], on: &[bool]) -> Load {
     let mut load = Load::default();
     let all = first..first + members.len();
@@ -384,6 +384,11 @@ impl Described for Body {
 
     fn is_held(&self) -> bool {
         self.pivot_b.is_some()
+    }
+
+    fn is_held_off_centre(&self) -> bool {
+        self.pivot_b
+            .is_some_and(|pivot_b| pivot_b != Vector3::zeros())
     }
 
     fn has_immovable_axes(&self) -> bool {

@@ -269,7 +269,7 @@ pub static BODY: Keys = Keys {
         key("mass", Takes::Either(&[Takes::Positive("kg"), Takes::Words(&["infinite"])]), "its mass; an infinite one is moved by nothing"),
         key("density", Takes::Positive("kg/m³"), "in place of a mass, where the shape has a volume; of parts that say nothing themselves"),
         key("inertia", Takes::Either(&[Takes::Vector("kg m²"), Takes::Matrix("kg m²"), Takes::Table(&INERTIA)]), "three moments or three rows, body axes, about the centre of mass or another point").default("the shape's"),
-        key("inertial", Takes::Table(&INERTIAL), "a robot description's <inertial>, in place of shape, mass and inertia"),
+        key("inertial", Takes::Table(&INERTIAL), "a robot description's `<inertial>`, in place of shape, mass and inertia"),
         key("immovable", Takes::List(&Takes::Words(&["x", "y", "z"])), "body axes that no torque turns it about; not with gyroscopic").default("[]"),
         key("position", Takes::Vector("m"), "of the centre of mass, world").default("[0, 0, 0]"),
         key("velocity", Takes::Vector("m/s"), "of the centre of mass, world; not with a pivot").default("[0, 0, 0]"),
@@ -416,10 +416,10 @@ pub static INERTIAL: Keys = Keys {
         key(
             "urdf",
             Takes::Text,
-            "'<inertial>…</inertial>', or a file of URDF",
+            "`<inertial>…</inertial>`, or a file of URDF",
         ),
         key("link", Takes::Text, "which link of the URDF file"),
-        key("mjcf", Takes::Text, "'<inertial …/>', or a file of MJCF"),
+        key("mjcf", Takes::Text, "`<inertial …/>`, or a file of MJCF"),
         key("body", Takes::Text, "which body of the MJCF file"),
     ],
     ..PLAIN

@@ -5,7 +5,7 @@ use super::files::{Enclosure, Files, Library};
 use super::keys;
 use super::problem::Problems;
 use super::table::{Node, Table, nearest};
-use super::warnings::{self, Found, WARNINGS};
+use super::warnings::{self, Finds, WARNINGS};
 use super::{Record, Scene, StateRate, Stepping, body, event, pairing};
 use crate::integrator::{self, DEFAULT_METHOD, Kind, METHODS, Method};
 use crate::trace::{STREAMS, StreamSet};
@@ -35,7 +35,7 @@ pub(super) fn scene(
     (file, name, source): (&str, &str, &str),
     library: &dyn Library,
     judge: bool,
-) -> Result<(Scene, Vec<(&'static str, Found)>), Problems> {
+) -> Result<(Scene, Vec<Finds>), Problems> {
     if source.len() as u64 > super::LARGEST {
         let mut problems = Problems::new(file, "");
         let message = format!(

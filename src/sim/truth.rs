@@ -33,6 +33,16 @@ enum Known {
     Nothing,
 }
 
+/// Which part of the angular momentum stays under forces that are constant in the world.
+#[derive(Clone, Copy, Debug)]
+enum KeptMomentum {
+    All,
+    /// All of them along one line.
+    Along(Unit<Vector3<f64>>),
+    /// Along two lines: no component stays, the energy does.
+    Nothing,
+}
+
 struct Kept {
     weights: Vec<Weight>,
     /// Where the reference point was, world, m: heights count from there, so that a scene far from
@@ -41,8 +51,7 @@ struct Kept {
     /// Kinetic and potential, J.
     energy: f64,
     momentum_w: Vector3<f64>,
-    /// The direction along which angular momentum is kept; `None` is every direction.
-    along: Option<Unit<Vector3<f64>>>,
+    momentum: KeptMomentum,
 }
 
 /// A body as it is simulated, its group and its index.
@@ -138,14 +147,19 @@ impl Truth {
                 let energy = kinetic - subject.energy(&truth);
                 self.energy = self.energy.max(subject.energy(&truth));
                 self.momentum = self.momentum.max(true_momentum_w.norm());
-                (Some(off), energy, (momentum_w - true_momentum_w).norm())
+                let momentum = (momentum_w - true_momentum_w).norm();
+                (Some(off), energy, Some(momentum))
             }
             Known::Kept(kept) => {
                 self.energy = self.energy.max(kinetic);
                 self.momentum = self.momentum.max(momentum_w.norm());
                 let change = momentum_w - kept.momentum_w;
                 let energy = kinetic + kept.potential(subject, sample) - kept.energy;
-                let momentum = kept.along.map_or(change.norm(), |d| change.dot(&d).abs());
+                let momentum = match kept.momentum {
+                    KeptMomentum::All => Some(change.norm()),
+                    KeptMomentum::Along(direction) => Some(change.dot(&direction).abs()),
+                    KeptMomentum::Nothing => None,
+                };
                 (None, energy, momentum)
             }
         };
@@ -153,7 +167,7 @@ impl Truth {
         Deviation {
             attitude,
             energy: Some(part(energy, self.energy)),
-            momentum: Some(part(momentum, self.momentum)),
+            momentum: momentum.map(|off| part(off, self.momentum)),
         }
     }
 }
@@ -177,19 +191,20 @@ fn kept((subject, sample, group, body): Simulated<'_>) -> Option<Kept> {
     // A force at the reference point turns nothing.
     let levers = weights.iter().filter(|w| w.point_b != Vector3::zeros());
     let directions = levers.filter_map(|w| Unit::try_new(w.force_w, 0.0));
-    let along = directions.clone().next();
-    if let Some(first) = along {
-        let mut others = directions;
-        // Forces along two lines keep no component at all; 1e-15 is a rounding of unit vectors.
-        if others.any(|other| first.cross(&other).norm() > 1e-15) {
-            return None;
-        }
-    }
+    let mut directions = directions;
+    let momentum = match directions.next() {
+        None => KeptMomentum::All,
+        // 1e-15 is a rounding of unit vectors.
+        Some(first) => match directions.all(|other| first.cross(&other).norm() <= 1e-15) {
+            true => KeptMomentum::Along(first),
+            false => KeptMomentum::Nothing,
+        },
+    };
     let mut kept = Kept {
         origin_w: sample.reference_w(subject),
         energy: 0.0,
         momentum_w: subject.momentum_w(&sample.motion),
-        along,
+        momentum,
         weights,
     };
     kept.energy = subject.energy(&sample.motion) + kept.potential(subject, sample);

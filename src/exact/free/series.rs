@@ -12,7 +12,7 @@ pub type Complex = (f64, f64);
 /// ```
 ///
 /// as polynomials in c = cos 2ν: `Re α = P(c)`, `Im α = sin 2ν R(c)`, `Re β = sin ν U(c)`,
-/// `Im β = -cos ν V(c)`. At k² = 0.9 q is below 0.1 and the first terms left out below 1e-19.
+/// `Im β = -cos ν V(c)`. At k² = 0.9 q is 0.14 and the first terms left out at most 1.3e-18.
 #[derive(Clone, Debug)]
 pub struct Nome {
     p: [f64; 4],

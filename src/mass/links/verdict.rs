@@ -7,8 +7,8 @@ use crate::math::symmetric_eigen;
 use nalgebra::{Matrix3, Vector3};
 
 /// An inertia this many times that of a uniform box of the same size and mass, or as many times less, is
-/// in other units.
-const IMPLAUSIBLE: f64 = 1e3;
+/// in other units: grams make it a thousand times, and what is solid has at least 0.6 of its box (a ball).
+const IMPLAUSIBLE: f64 = 400.0;
 
 /// What there is to say of an inertial.
 #[derive(Clone, Debug, PartialEq)]

@@ -21,6 +21,9 @@ const RING_PLACE: f64 = 0.8;
 const RING_ARC: f64 = 1.75 * std::f64::consts::PI;
 const RING_PIECES: usize = 28;
 
+/// The vector of a body at an instant.
+pub type Value = Box<dyn Fn(&Subject, &Sample) -> Vector3<f64>>;
+
 /// Which vector, and how it looks.
 pub struct Shown {
     /// The first part of its entities' paths.
@@ -31,7 +34,7 @@ pub struct Shown {
     pub colour: Colour,
     /// m per unit.
     pub scale: f64,
-    pub value: Box<dyn Fn(&Subject, &Sample) -> Vector3<f64>>,
+    pub value: Value,
 }
 
 pub struct VectorPicture {
@@ -173,7 +176,8 @@ impl Turns {
         let centre = axis * RING_PLACE;
         let radius = RING_RADIUS * length;
         let at = |k: usize| {
-            let (sin, cos) = (RING_ARC * k as f64 / RING_PIECES as f64).sin_cos();
+            // The same on every machine, as all that is recorded.
+            let (sin, cos) = libm::sincos(RING_ARC * k as f64 / RING_PIECES as f64);
             (centre + (u * cos + v * sin) * radius, v * cos - u * sin)
         };
         for k in 0..=RING_PIECES {

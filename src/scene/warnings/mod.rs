@@ -78,6 +78,9 @@ impl Found {
     }
 }
 
+/// The code of a warning, and what it found.
+pub(super) type Finds = (&'static str, Found);
+
 /// Everything that was found in one scene, by the places where it came from.
 pub(super) struct Told(Vec<One>);
 
@@ -89,8 +92,8 @@ struct One {
 }
 
 impl Told {
-    pub fn new(found: Vec<(&'static str, Found)>, at: impl Fn(&Range<usize>) -> At) -> Self {
-        let one = |(code, found): (&'static str, Found)| One {
+    pub fn new(found: Vec<Finds>, at: impl Fn(&Range<usize>) -> At) -> Self {
+        let one = |(code, found): Finds| One {
             code,
             list: found
                 .list
@@ -174,7 +177,7 @@ pub(super) fn find(
     scene: &Scene,
     top: &Table<'_>,
     allowed: &[(Node<'_>, &'static str)],
-) -> Vec<(&'static str, Found)> {
+) -> Vec<Finds> {
     let context = Context::new(scene, top);
     let mut all = Vec::new();
     for warning in WARNINGS {
