@@ -230,6 +230,10 @@ fn wrong_effects_are_refused_with_place_reason_and_remedy() {
         &format!("duration = 1.0\n{held}[effects]\ngravity_gradient = {{ mu = 1, orbit = true }}"),
         &["a pivot holds a, so it is in no orbit"],
     );
+    wrong(
+        &format!("duration = 1.0\n{held}[effects]\ngravity_gradient = {{ mu = 1 }}"),
+        &["a pivot holds a off its centre of mass", "as gravity"],
+    );
     let axes = brick("a", "immovable = [\"x\"]");
     wrong(
         &format!("duration = 1.0\n{axes}[effects]\ngravity_gradient = {{ mu = 1 }}"),

@@ -1,6 +1,7 @@
 //! The links of a robot in a row, each as the uniform ellipsoid of its mass and inertia, in its own axes.
 //!
-//! What no rigid body has no ellipsoid is of: it stands there as a point with the reason.
+//! What no rigid body has is no ellipsoid, and what is in other units would hide all others: a red dot in
+//! the row, and the reason in the text.
 
 use super::RecordError;
 use super::blueprint::{Blueprint, View};
@@ -14,13 +15,14 @@ use rerun::archetypes::{
     Ellipsoids3D, Points3D, RecordingInfo, TextDocument, Transform3D, ViewCoordinates,
 };
 use rerun::components::{FillMode, Radius};
-use rerun::external::re_sdk_types::blueprint::components::ContainerKind;
+use rerun::external::re_sdk_types::blueprint::archetypes as ba;
+use rerun::external::re_sdk_types::blueprint::components::{self as bc, ContainerKind};
 use std::path::Path;
 
 const LEGEND: &str = "# Equivalent ellipsoids\n\nEach link stands by itself, in its own axes, as the uniform \
     ellipsoid that has its mass and its inertia: half axes `a_i² = 5/(2m) (I_j + I_k - I_i)`. Its size and place beside the \
     grey dot, the link's origin, should be about those of the part itself. A red dot is a link whose inertia no rigid \
-    body has.";
+    body has, or hardly any of its size.";
 
 /// Writes a recording of what a robot's description says of its links.
 pub fn links(path: &Path, robot: &Description) -> Result<Summary, RecordError> {
@@ -34,7 +36,7 @@ pub fn links(path: &Path, robot: &Description) -> Result<Summary, RecordError> {
         "/__properties",
         &[&RecordingInfo::new().with_name(title.as_str())],
     )?;
-    file.statics("/legend", &[&TextDocument::from_markdown(LEGEND)])?;
+    file.statics("/legend", &[&TextDocument::from_markdown(legend(robot))])?;
     let mut at = 0.0;
     for (k, link) in robot.links.iter().enumerate() {
         let Some(Ok(inertial)) = &link.inertial else {
@@ -54,6 +56,31 @@ pub fn links(path: &Path, robot: &Description) -> Result<Summary, RecordError> {
         rows,
         verdicts: Vec::new(),
     })
+}
+
+/// How to read the picture, and what is wrong with which link.
+fn legend(robot: &Description) -> String {
+    let mut text = LEGEND.to_owned();
+    for link in &robot.links {
+        let Some(Ok(inertial)) = &link.inertial else {
+            continue;
+        };
+        let verdict = Verdict::of(inertial, link.extents);
+        if !verdict.why().is_empty() {
+            text += &format!(
+                "\n\n- **{}**, {}: {}",
+                link.name,
+                verdict.word(),
+                verdict.why()
+            );
+        }
+    }
+    text
+}
+
+/// Whether there is an ellipsoid to be drawn among the others.
+fn is_drawn(verdict: &Verdict) -> bool {
+    verdict.word() == "possible"
 }
 
 fn layout(file: &mut RrdFile) -> Result<(), RecordError> {
@@ -83,16 +110,20 @@ fn layout(file: &mut RrdFile) -> Result<(), RecordError> {
         &[picture, legend],
         &shares,
     )?;
+    let hidden = ba::PanelBlueprint::new().with_state(bc::PanelState::Hidden);
+    blueprint.log("blueprint_panel", &hidden)?;
+    blueprint.log("selection_panel", &hidden)?;
+    let time = ba::TimePanelBlueprint::new().with_state(bc::PanelState::Hidden);
+    blueprint.log("time_panel", &time)?;
     blueprint.finish(&root)
 }
 
 /// How far a link's picture goes from its origin, m.
 fn reach(inertial: &Inertial, verdict: &Verdict) -> f64 {
-    let half = match verdict.impossible.is_empty() {
-        true => inertial.ellipsoid().0.amax(),
-        false => 0.05,
-    };
-    inertial.centre.norm() + half
+    match is_drawn(verdict) {
+        true => inertial.centre.norm() + inertial.ellipsoid().0.amax(),
+        false => 0.2,
+    }
 }
 
 fn draw(
@@ -112,17 +143,18 @@ fn draw(
         .with_colors([look::PIVOT]);
     file.statics(path.clone(), &[&place, &dot])?;
     let centre: [f32; 3] = single(inertial.centre);
-    let label = match verdict.why() {
-        why if why.is_empty() => link.name.clone(),
-        why => format!("{}: {why}", link.name),
+    let label = match is_drawn(verdict) {
+        true => link.name.clone(),
+        false => format!("{}: {}", link.name, verdict.word()),
     };
+    let centre = if is_drawn(verdict) { centre } else { [0.0; 3] };
     let name = path.join(&EntityPath::from_single_string("name"));
-    let colour = match verdict.word() {
-        "possible" => look::NAME,
-        _ => look::FORCE,
+    let colour = match is_drawn(verdict) {
+        true => look::NAME,
+        false => look::FORCE,
     };
     let text = Points3D::new([centre])
-        .with_radii([Radius::new_ui_points(if verdict.impossible.is_empty() {
+        .with_radii([Radius::new_ui_points(if is_drawn(verdict) {
             0.0
         } else {
             6.0
@@ -131,7 +163,7 @@ fn draw(
         .with_colors([colour])
         .with_show_labels(true);
     file.statics(name, &[&text])?;
-    if !verdict.impossible.is_empty() {
+    if !is_drawn(verdict) {
         return Ok(());
     }
     let (half, q) = inertial.ellipsoid();
