@@ -442,6 +442,11 @@ fn blow_row(scene: &Scene, subjects: &[Subject], blow: &Blow) -> Vec<String> {
     let event = &scene.events[blow.event];
     let subject = &subjects[blow.body];
     let (torque, response) = match blow.jump {
+        // A profile that begins at nothing: its torque is told at the peak, the body as it is.
+        None if event.action.profile() != Profile::Box => (
+            format!("{}\nat its peak", short_vector(blow.tau_w)),
+            format!("{}\nas it begins", short_vector(blow.sample.alpha_w)),
+        ),
         None => (short_vector(blow.tau_w), short_vector(blow.sample.alpha_w)),
         Some(jump) => (
             format!("{} N·m·s", short_vector(jump.angular_impulse_w)),
