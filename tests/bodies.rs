@@ -1,30 +1,13 @@
 //! Bodies as scenes describe them: compounds, inertia about a point, thin bodies, swarms; and what is
 //! said of those that are wrong.
 
+mod common;
+
+use common::Nowhere;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 use torquescope::scene::{Body, Scene, Target};
 use torquescope::sim::{Outcome, Simulation};
-use torquescope::trace::{Instant, Note, Sample, Sink, SinkError, Track};
-
-struct Nowhere;
-
-impl Sink for Nowhere {
-    fn motions(&mut self, _: &Track<'_>) -> Result<(), SinkError> {
-        Ok(())
-    }
-    fn samples(
-        &mut self,
-        _: Instant,
-        _: std::ops::Range<usize>,
-        _: &[Sample],
-    ) -> Result<(), SinkError> {
-        Ok(())
-    }
-    fn note(&mut self, _: Instant, _: &Note) -> Result<(), SinkError> {
-        Ok(())
-    }
-}
 
 fn parsed(rest: &str) -> Result<Scene, String> {
     let source = format!("duration = 1.0\n{rest}");
@@ -662,4 +645,18 @@ fn the_examples_of_the_page_are_right() {
     );
     let swarm = scene(swarm.split("```").next().unwrap()).bodies;
     assert_eq!(swarm.len(), 10_000);
+}
+
+/// A race is run by one body: that it was one of many is over.
+#[test]
+fn the_first_of_a_swarm_races_as_any_body_does() {
+    let keys = "grid = { spacing = 2.0 }\nangular_velocity = [1, 2, 3]";
+    let scene = scene(&format!(
+        "[effects]\ngyroscopic = true\n{}",
+        swarm("box", 3, keys)
+    ));
+    let methods = [torquescope::integrator::find("rk4").unwrap()];
+    let race = torquescope::cost::Race::new(&scene, &methods, 0.01, 3.0).unwrap();
+    race.run(&mut Nowhere).unwrap();
+    assert_eq!(race.scene.outside_swarms(), race.scene.bodies.len());
 }

@@ -8,7 +8,6 @@ use crate::scene::{Event, Finding, Scene, SceneError, Script, Stepping};
 use crate::sim::{Blow, Outcome, SimError, Simulation};
 use crate::trace::{Sample, Subject, short, short_numbers, short_vector};
 use serde::Serialize;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Simulate a scene and record it.
@@ -419,20 +418,19 @@ fn tables(scene: &Scene, subjects: &[Subject], outcome: &Outcome, whole: bool) -
         "angular velocity ω (rad/s)",
         "kinetic energy (J)",
     ];
-    let alone = subjects.partition_point(|subject| subject.swarm.is_none());
-    let ends = subjects.iter().zip(&outcome.end).take(alone);
-    let mut rows: Vec<Vec<String>> = ends.map(|(s, m)| end_row(s, m)).collect();
-    for swarm in &scene.swarms {
-        let of = |all: &Range<usize>| subjects[all.clone()].iter().zip(&outcome.end[all.clone()]);
-        let energy = of(&swarm.members).map(|(subject, sample)| subject.energy(&sample.motion));
-        rows.push(vec![
-            format!("{} ({} bodies)", swarm.name, swarm.members.len()),
-            String::new(),
-            String::new(),
-            String::new(),
-            String::new(),
-            format!("{} in all", short(energy.sum::<f64>())),
-        ]);
+    let (alone, swarms) = subjects.split_at(scene.outside_swarms());
+    let (ends, ends_of_swarms) = outcome.end.split_at(alone.len());
+    let alone = alone.iter().zip(ends);
+    let mut rows: Vec<Vec<String>> = alone.map(|(s, m)| end_row(s, m)).collect();
+    let mut ends = ends_of_swarms.iter();
+    for members in swarms.chunk_by(|a, b| a.swarm == b.swarm) {
+        let name = members[0].swarm.as_deref().unwrap_or_default();
+        let energies = members.iter().zip(&mut ends);
+        let energy: f64 = energies.map(|(s, m)| s.energy(&m.motion)).sum();
+        let mut row = vec![String::new(); header.len()];
+        row[0] = format!("{name} ({} bodies)", members.len());
+        row[header.len() - 1] = format!("{} in all", short(energy));
+        rows.push(row);
     }
     text += &print::table(&header, rows);
     text

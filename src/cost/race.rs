@@ -36,7 +36,10 @@ impl Race {
     ) -> Result<Self, SimError> {
         let mut alone = scene.clone();
         alone.bodies.truncate(1);
-        alone.bodies.iter_mut().for_each(|body| body.method = None);
+        for body in &mut alone.bodies {
+            body.method = None;
+            body.swarm = None;
+        }
         alone.events.retain(|event| match &event.target {
             Target::Body(body) | Target::Log(Some(body)) => *body == 0,
             Target::Hit(_) | Target::All | Target::Log(None) => true,

@@ -37,6 +37,8 @@ pub struct Body {
     pub omega_w: Vector3<f64>,
     /// By which it goes in place of the scene's.
     pub method: Option<OwnMethod>,
+    /// The swarm it is one of, if any; those that are in none come first.
+    pub swarm: Option<Arc<str>>,
 }
 
 /// A method for one body.
@@ -82,20 +84,10 @@ pub(super) fn points(solid: Option<&dyn Solid>) -> Vec<NamedPoint> {
     }
 }
 
-/// Bodies that one table makes; they follow all others.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Swarm {
-    pub name: Arc<str>,
-    /// Indices of its bodies.
-    pub members: Range<usize>,
-}
-
 /// The bodies read; events refer to them by name even where one of them is wrong.
 #[derive(Default)]
 pub(super) struct Bodies {
     pub valid: Vec<Option<Body>>,
-    pub swarms: Vec<Swarm>,
     /// Bodies and swarms.
     names: HashMap<String, Named>,
 }
@@ -212,11 +204,7 @@ impl Bodies {
             return;
         };
         let name = std::mem::take(&mut like.name);
-        let first = self.valid.len();
-        self.swarms.push(Swarm {
-            name: name.as_str().into(),
-            members: first..first + bodies,
-        });
+        like.swarm = Some(name.as_str().into());
         let label = std::mem::take(&mut like.label);
         let labelled = table.has("label");
         self.valid.extend((0..bodies).map(|k| {
@@ -348,6 +336,7 @@ fn read(table: &Table<'_>, files: &Files<'_>, problems: &mut Problems) -> Option
         q_wb: q_wb?,
         omega_w: omega_w?,
         method: method?,
+        swarm: None,
     };
     if let Some(node) = pivot {
         let pivot = point(&node, &body, problems)?;

@@ -25,7 +25,7 @@ mod swarm;
 mod table;
 mod warnings;
 
-pub use body::{Body, OwnMethod, Swarm};
+pub use body::{Body, OwnMethod};
 pub use effect::SceneEffect;
 pub(crate) use effect::lasting;
 pub use event::{Action, Change, Click, Event, Framed, Target};
@@ -66,8 +66,6 @@ pub struct Scene {
     /// The effects that are called for, those that are off at first too.
     pub effects: Vec<SceneEffect>,
     pub bodies: Vec<Body>,
-    /// Which of the bodies belong together.
-    pub swarms: Vec<Swarm>,
     pub events: Vec<Event>,
 }
 
@@ -155,6 +153,11 @@ impl SceneError {
 const LARGEST: u64 = 1 << 23;
 
 impl Scene {
+    /// Bodies that are in no swarm: the first.
+    pub fn outside_swarms(&self) -> usize {
+        self.bodies.partition_point(|body| body.swarm.is_none())
+    }
+
     /// Reads and checks a scene file, or a scene that the program carries, such as `@cone`.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
         Ok(Script::load(path)?.scene()?)

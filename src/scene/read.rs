@@ -187,7 +187,6 @@ fn read(
         step: step?,
         record: record?,
         effects: effects?,
-        swarms: bodies.swarms.clone(),
         bodies: bodies.into_valid()?,
         events,
     };

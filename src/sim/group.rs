@@ -78,7 +78,7 @@ pub fn subject(body: &Body) -> Subject {
             omega_w: body.omega_w,
         },
         sources: Vec::new(),
-        swarm: None,
+        swarm: body.swarm.clone(),
         solid: body.solid.clone(),
     }
 }

@@ -25,7 +25,6 @@ use schedule::{Schedule, Stretch};
 use script::{Acting, Applied, Done, Happening, Lasting};
 use std::cell::RefCell;
 use std::ops::Range;
-use std::sync::Arc;
 use truth::Truth;
 
 /// A scene being stepped.
@@ -34,7 +33,7 @@ pub struct Simulation<'s> {
     subjects: Vec<Subject>,
     groups: Vec<Group>,
     /// Bodies that are in no swarm: the first. Of the others nothing is derived.
-    alone: usize,
+    outside_swarms: usize,
     /// By body: the group it is in.
     home: Vec<usize>,
     acting: Acting,
@@ -136,10 +135,7 @@ impl<'s> Simulation<'s> {
         let mut simulation = Self {
             scene,
             subjects: scene.bodies.iter().map(group::subject).collect(),
-            alone: scene
-                .swarms
-                .first()
-                .map_or(scene.bodies.len(), |s| s.members.start),
+            outside_swarms: scene.outside_swarms(),
             home: homes
                 .flat_map(|(k, group)| group.members.clone().map(move |_| k))
                 .collect(),
@@ -152,14 +148,9 @@ impl<'s> Simulation<'s> {
             timed: scene.record.streams.contains("step_time"),
             step_time: None,
         };
-        for swarm in &scene.swarms {
-            for subject in &mut simulation.subjects[swarm.members.clone()] {
-                subject.swarm = Some(Arc::clone(&swarm.name));
-            }
-        }
         if scene.record.streams.contains("sources") {
-            let alone = simulation.alone;
-            sources::tell_apart(scene, &mut simulation.subjects[..alone]);
+            let outside = simulation.outside_swarms;
+            sources::tell_apart(scene, &mut simulation.subjects[..outside]);
         }
         for group in &mut simulation.groups {
             group.watch(&simulation.subjects[group.members.clone()]);
@@ -285,7 +276,7 @@ impl<'s> Simulation<'s> {
         let all: Vec<usize> = (0..self.subjects.len()).collect();
         self.must_be_finite(start, &all, sink)?;
         self.set_out(&all, schedule, chooser);
-        let mut samples = self.samples_alone(|group| group.samples(start.time));
+        let mut samples = self.samples_outside_swarms(|group| group.samples(start.time));
         self.judge(0, &mut samples, start.time);
         sink.samples(start, 0..samples.len(), &samples)?;
         self.deliver_fingerprint(start, sink)?;
@@ -312,7 +303,7 @@ impl<'s> Simulation<'s> {
                 let applied = self.apply(now, &stretch.happenings, schedule);
                 let touched = self.touched(&applied);
                 for (body, sample) in &before {
-                    if *body < self.alone && touched.binary_search(body).is_ok() {
+                    if touched.binary_search(body).is_ok() {
                         let sample = std::slice::from_ref(sample);
                         sink.samples(now, *body..body + 1, sample)?;
                     }
@@ -426,7 +417,7 @@ impl<'s> Simulation<'s> {
         for (k, kept) in stretch.kept.iter().enumerate() {
             if kept.display {
                 let time = kept.at.time;
-                let mut samples = self.samples_alone(|group| group.samples_kept(k, time));
+                let mut samples = self.samples_outside_swarms(|group| group.samples_kept(k, time));
                 self.judge(0, &mut samples, time);
                 sink.samples(kept.at, 0..samples.len(), &samples)?;
                 if sink.wants_fingerprints() {
@@ -474,7 +465,7 @@ impl<'s> Simulation<'s> {
             kind: NoteKind::Failure,
             strike: None,
         };
-        let samples = self.samples_alone(|group| group.samples(at.time));
+        let samples = self.samples_outside_swarms(|group| group.samples(at.time));
         let written = sink
             .samples(at, 0..samples.len(), &samples)
             .and_then(|()| sink.note(at, &note));
@@ -548,14 +539,10 @@ impl<'s> Simulation<'s> {
                 (Target::Log(_), ..) => {}
             }
         }
+        bodies.retain(|body| *body < self.outside_swarms);
         bodies.sort_unstable();
         bodies.dedup();
-        let sample = |body: usize| {
-            let mut sample = [self.group_of(body).sample(body, now.time)];
-            self.judge(body, &mut sample, now.time);
-            let [sample] = sample;
-            (body, sample)
-        };
+        let sample = |body| (body, self.judged(body, now.time));
         bodies.into_iter().map(sample).collect()
     }
 
@@ -740,12 +727,21 @@ impl<'s> Simulation<'s> {
         bodies: &[usize],
         sink: &mut dyn Sink,
     ) -> Result<(), SinkError> {
-        for &body in bodies.iter().take_while(|body| **body < self.alone) {
-            let mut sample = [self.group_of(body).sample(body, now.time)];
-            self.judge(body, &mut sample, now.time);
-            sink.samples(now, body..body + 1, &sample)?;
+        for &body in bodies
+            .iter()
+            .take_while(|body| **body < self.outside_swarms)
+        {
+            sink.samples(now, body..body + 1, &[self.judged(body, now.time)])?;
         }
         Ok(())
+    }
+
+    /// A body as it is, and how far that is from the truth.
+    fn judged(&self, body: usize, t: f64) -> Sample {
+        let mut sample = [self.group_of(body).sample(body, t)];
+        self.judge(body, &mut sample, t);
+        let [sample] = sample;
+        sample
     }
 
     /// Adds to the samples of bodies from `first` on how far they are from the truth, where it is
@@ -765,11 +761,11 @@ impl<'s> Simulation<'s> {
     }
 
     /// Of the bodies that are in no swarm.
-    fn samples_alone(&self, of: impl Fn(&Group) -> Vec<Sample>) -> Vec<Sample> {
+    fn samples_outside_swarms(&self, of: impl Fn(&Group) -> Vec<Sample>) -> Vec<Sample> {
         let groups = self.groups.iter();
-        let groups = groups.take_while(|group| group.members.start < self.alone);
+        let groups = groups.take_while(|group| group.members.start < self.outside_swarms);
         let mut samples: Vec<Sample> = groups.flat_map(of).collect();
-        samples.truncate(self.alone);
+        samples.truncate(self.outside_swarms);
         samples
     }
 
@@ -813,9 +809,8 @@ fn truths(scene: &Scene) -> Vec<RefCell<Truth>> {
         return Vec::new();
     }
     let each = group::groups(scene, 1);
-    let alone = scene.swarms.first().map_or(each.len(), |s| s.members.start);
     each.into_iter()
-        .take(alone)
+        .take(scene.outside_swarms())
         .map(|body| RefCell::new(Truth::new(body)))
         .collect()
 }
