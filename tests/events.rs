@@ -2,16 +2,15 @@
 
 mod common;
 
-use common::Nowhere;
+use common::{Memory, Nowhere};
 use nalgebra::{Vector3, Vector4};
 use std::f64::consts::PI;
-use std::ops::Range;
 use torquescope::cost::{Plan, Race};
 use torquescope::integrator;
 use torquescope::math::angle_between;
 use torquescope::scene::{Scene, Stepping};
 use torquescope::sim::{Outcome, Simulation};
-use torquescope::trace::{Instant, Note, NoteKind, Sample, Sink, SinkError, Track};
+use torquescope::trace::{NoteKind, Sample};
 
 fn parse(source: &str) -> Scene {
     Scene::parse("inline", "inline", source).unwrap_or_else(|error| panic!("{error}\n{source}"))
@@ -29,50 +28,6 @@ fn lines(problems: &torquescope::scene::Problems) -> String {
     let findings = problems.findings();
     let lines: Vec<String> = findings.iter().map(|finding| finding.line()).collect();
     lines.join("\n")
-}
-
-/// Everything but the states.
-#[derive(Default)]
-struct Memory {
-    samples: Vec<(Instant, usize, Sample)>,
-    notes: Vec<(Instant, Note)>,
-}
-
-impl Sink for Memory {
-    fn motions(&mut self, _: &Track<'_>) -> Result<(), SinkError> {
-        Ok(())
-    }
-
-    fn samples(
-        &mut self,
-        at: Instant,
-        bodies: Range<usize>,
-        samples: &[Sample],
-    ) -> Result<(), SinkError> {
-        let rows = bodies.zip(samples);
-        self.samples
-            .extend(rows.map(|(body, sample)| (at, body, sample.clone())));
-        Ok(())
-    }
-
-    fn note(&mut self, at: Instant, note: &Note) -> Result<(), SinkError> {
-        self.notes.push((at, note.clone()));
-        Ok(())
-    }
-}
-
-impl Memory {
-    fn texts(&self) -> Vec<&str> {
-        self.notes.iter().map(|(_, note)| &*note.text).collect()
-    }
-
-    /// The rows of a body at a time, in order.
-    fn at(&self, body: usize, time: f64) -> Vec<&Sample> {
-        let rows = self.samples.iter();
-        rows.filter(|(at, b, _)| at.time == time && *b == body)
-            .map(|(_, _, sample)| sample)
-            .collect()
-    }
 }
 
 fn run(scene: &Scene) -> (Outcome, Memory) {

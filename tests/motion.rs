@@ -343,39 +343,13 @@ fn the_same_motion_in_turned_shifted_and_mirrored_coordinates() {
 /// method adds to it is known all the same.
 #[test]
 fn energy_is_watched_where_no_momentum_is_kept() {
-    struct Last(Vec<Sample>);
-    impl torquescope::trace::Sink for Last {
-        fn motions(
-            &mut self,
-            _: &torquescope::trace::Track<'_>,
-        ) -> Result<(), torquescope::trace::SinkError> {
-            Ok(())
-        }
-        fn samples(
-            &mut self,
-            _: torquescope::trace::Instant,
-            _: std::ops::Range<usize>,
-            samples: &[Sample],
-        ) -> Result<(), torquescope::trace::SinkError> {
-            self.0.extend_from_slice(samples);
-            Ok(())
-        }
-        fn note(
-            &mut self,
-            _: torquescope::trace::Instant,
-            _: &torquescope::trace::Note,
-        ) -> Result<(), torquescope::trace::SinkError> {
-            Ok(())
-        }
-    }
     let drifts = |force: &str| {
         let source = format!(
             "duration = 1.0\n[effects]\ngyroscopic = true\ngravity = [0, -9.81, 0]\n[[body]]\nname = \"a\"\nmass = 1.0\nshape = {{ cylinder = {{ radius = 0.1, height = 0.6 }} }}\npivot = \"top\"\norientation = {{ axis = [1, 0, 0], degrees = 40 }}\n[[event]]\nat = 0.0\nfor = 1.0\nbody = \"a\"\nforce = {force}\npoint = \"bottom\"\n"
         );
         let scene = Scene::parse("s", "s", &source).unwrap_or_else(|error| panic!("{error}"));
-        let mut last = Last(Vec::new());
-        Simulation::new(&scene).run(&mut last).1.unwrap();
-        last.0.pop().unwrap().deviation
+        let (_, _, mut memory) = common::run(&scene);
+        memory.samples.pop().unwrap().2.deviation
     };
     let askew = drifts("[2.0, 0.0, 0.0]");
     // rk4 in steps of a millisecond.

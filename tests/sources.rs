@@ -1,42 +1,16 @@
 //! Each source's own torque: the parts, found one by one from the scene, add up to what turns the body.
 
+mod common;
+
+use common::Memory;
 use nalgebra::Vector3;
-use std::ops::Range;
 use torquescope::scene::Scene;
-use torquescope::sim::Simulation;
-use torquescope::trace::{Instant, Note, Sample, Sink, SinkError, Subject, Track};
+use torquescope::trace::{Sample, Subject};
 
-/// Keeps every sample, with the body it is of.
-#[derive(Default)]
-struct Kept(Vec<(f64, usize, Sample)>);
-
-impl Sink for Kept {
-    fn motions(&mut self, _: &Track<'_>) -> Result<(), SinkError> {
-        Ok(())
-    }
-    fn samples(
-        &mut self,
-        at: Instant,
-        bodies: Range<usize>,
-        samples: &[Sample],
-    ) -> Result<(), SinkError> {
-        let each = bodies.zip(samples.iter().cloned());
-        self.0
-            .extend(each.map(|(body, sample)| (at.time, body, sample)));
-        Ok(())
-    }
-    fn note(&mut self, _: Instant, _: &Note) -> Result<(), SinkError> {
-        Ok(())
-    }
-}
-
-fn run(source: &str) -> (Vec<Subject>, Kept) {
+fn run(source: &str) -> (Vec<Subject>, Memory) {
     let scene = Scene::parse("inline", "inline", source).unwrap_or_else(|error| panic!("{error}"));
-    let simulation = Simulation::new(&scene);
-    let subjects = simulation.subjects().to_vec();
-    let mut kept = Kept::default();
-    simulation.run(&mut kept).1.unwrap();
-    (subjects, kept)
+    let (subjects, _, memory) = common::run(&scene);
+    (subjects, memory)
 }
 
 const BODIES: &str = r#"
@@ -106,13 +80,14 @@ fn the_parts_add_up_to_what_turns_the_body() {
     // The weight of a free body turns nothing.
     assert_eq!(names(&subjects[1]), ["damping", "gyroscopic", "torque"]);
     let mut seen = 0;
-    for (time, body, sample) in &kept.0 {
+    for (at, body, sample) in &kept.samples {
         let subject = &subjects[*body];
         assert_eq!(sample.sources.len(), subject.sources.len());
         let sum: Vector3<f64> = sample.sources.iter().sum();
         assert!(
             close(sum, inertial_torque(subject, sample)),
-            "{time} {body}"
+            "{} {body}",
+            at.time
         );
         let named = |name: &str| {
             let place = names(subject).into_iter().position(|n| n == name);
@@ -142,7 +117,7 @@ fn the_parts_add_up_to_what_turns_the_body() {
 fn in_the_tutorials_model_there_is_no_gyroscopic_part() {
     let (subjects, kept) = run(&scene("gravity = [0.0, -9.81, 0.0]"));
     assert_eq!(names(&subjects[0]), ["gravity", "push", "torque"]);
-    for (_, _, sample) in kept.0.iter().filter(|(_, body, _)| *body == 0) {
+    for (_, _, sample) in kept.samples.iter().filter(|(_, body, _)| *body == 0) {
         let sum: Vector3<f64> = sample.sources.iter().sum();
         assert!(close(sum, sample.tau_w));
         assert!(close(sum, inertial_torque(&subjects[0], sample)));
@@ -154,10 +129,10 @@ fn what_is_not_called_for_or_says_nothing_new_is_absent() {
     let alone = "duration = 1.0\n[effects]\ngyroscopic = true\n[[body]]\nname = \"b\"\nmass = 1.0\ninertia = [1, 2, 2.5]\nangular_velocity = [1, 1, 1]\n";
     let (subjects, kept) = run(alone);
     assert!(subjects[0].sources.is_empty());
-    assert!(kept.0.iter().all(|(_, _, s)| s.sources.is_empty()));
+    assert!(kept.samples.iter().all(|(_, _, s)| s.sources.is_empty()));
     let source = scene("gyroscopic = true\ngravity = [0.0, -9.81, 0.0]")
         .replace("rate = 50", "rate = 50\nstreams = [\"torque\"]");
     let (subjects, kept) = run(&source);
     assert!(subjects.iter().all(|s| s.sources.is_empty()));
-    assert!(kept.0.iter().all(|(_, _, s)| s.sources.is_empty()));
+    assert!(kept.samples.iter().all(|(_, _, s)| s.sources.is_empty()));
 }

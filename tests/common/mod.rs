@@ -57,6 +57,21 @@ impl Sink for Memory {
     }
 }
 
+impl Memory {
+    /// What the log says, line by line.
+    pub fn texts(&self) -> Vec<&str> {
+        self.notes.iter().map(|(_, note)| &*note.text).collect()
+    }
+
+    /// The rows of a body at a time, in order.
+    pub fn at(&self, body: usize, time: f64) -> Vec<&Sample> {
+        let rows = self.samples.iter();
+        rows.filter(|(at, b, _)| at.time == time && *b == body)
+            .map(|(_, _, sample)| sample)
+            .collect()
+    }
+}
+
 /// A shipped scene.
 pub fn load(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
