@@ -423,7 +423,7 @@ fn tables(scene: &Scene, subjects: &[Subject], outcome: &Outcome, whole: bool) -
     let alone = alone.iter().zip(ends);
     let mut rows: Vec<Vec<String>> = alone.map(|(s, m)| end_row(s, m)).collect();
     let mut ends = ends_of_swarms.iter();
-    for members in swarms.chunk_by(|a, b| a.swarm == b.swarm) {
+    for members in swarms.chunk_by(Subject::is_like) {
         let name = members[0].swarm.as_deref().unwrap_or_default();
         let energies = members.iter().zip(&mut ends);
         let energy: f64 = energies.map(|(s, m)| s.energy(&m.motion)).sum();

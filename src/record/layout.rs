@@ -412,7 +412,6 @@ fn bounds(seen: &[&Subject], size: f64) -> (Vector3<f64>, f64) {
 /// The height of the ground grid: under the lowest body as it starts.
 fn floor(seen: &[&Subject]) -> f64 {
     // Bodies of a swarm are alike: one of them says how far each may reach down.
-    let like = |a: &&Subject, b: &&Subject| a.swarm.is_some() && a.swarm == b.swarm;
     let lowest = |alike: &[&Subject]| match alike {
         [alone] => mesh::lowest(alone),
         many => {
@@ -422,7 +421,7 @@ fn floor(seen: &[&Subject]) -> f64 {
         }
     };
     let low = seen
-        .chunk_by(like)
+        .chunk_by(|a, b| a.is_like(b))
         .map(lowest)
         .fold(f64::INFINITY, f64::min);
     if low.is_finite() { low } else { 0.0 }

@@ -208,7 +208,7 @@ impl Trace {
         }
         let mut first = bodies.len();
         let mut swarms = Vec::new();
-        for members in setting.swarms.chunk_by(|a, b| a.swarm == b.swarm) {
+        for members in setting.swarms.chunk_by(Subject::is_like) {
             swarms.push(SwarmRecorder::begin(file, members, first, swarms.len())?);
             first += members.len();
         }

@@ -26,8 +26,7 @@ pub struct Scales {
 impl Scales {
     pub fn new(subjects: &[Subject], expected: &Sizes) -> Self {
         // Bodies of a swarm are alike: one of them is measured.
-        let like = |a: &Subject, b: &Subject| a.swarm.is_some() && a.swarm == b.swarm;
-        let size = typical(subjects.chunk_by(like).flat_map(|alike| {
+        let size = typical(subjects.chunk_by(Subject::is_like).flat_map(|alike| {
             let radius = mesh::radius(&alike[0]);
             std::iter::repeat_n(radius, alike.len())
         }));

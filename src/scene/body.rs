@@ -8,6 +8,8 @@ use super::problem::Problems;
 use super::read;
 use super::swarm::{self, Spread};
 use super::table::{Node, Table, nearest};
+use crate::body::{Inertial, State};
+use crate::effect::Member;
 use crate::integrator::Method;
 use crate::mass::solids::{NamedPoint, SOLIDS, Solid, SolidKind};
 use crate::mass::{MassProperties, UnphysicalMass};
@@ -39,6 +41,33 @@ pub struct Body {
     pub method: Option<OwnMethod>,
     /// The swarm it is one of, if any; those that are in none come first.
     pub swarm: Option<Arc<str>>,
+}
+
+impl Body {
+    /// As effects find it in a lane of a block.
+    pub(crate) fn member(&self, lane: usize) -> Member<'_> {
+        let (inertial, q_bp) = Inertial::new(&self.properties, self.pivot_b);
+        Member {
+            lane,
+            inertial,
+            q_pb: q_bp.inverse(),
+            body: self,
+        }
+    }
+
+    /// How it starts: about its reference point, in its principal axes. What a pivot holds stays.
+    pub(crate) fn start(&self, q_pb: UnitQuaternion<f64>) -> State {
+        let (x_w, v_w) = match self.pivot_b {
+            Some(pivot_b) => (self.position_w + self.q_wb * pivot_b, Vector3::zeros()),
+            None => (self.position_w, self.velocity_w),
+        };
+        State {
+            x_w,
+            v_w,
+            q_wp: (self.q_wb * q_pb.inverse()).into_inner(),
+            omega_w: self.omega_w,
+        }
+    }
 }
 
 /// A method for one body.

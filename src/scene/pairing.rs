@@ -4,8 +4,8 @@ use super::effect::lasting;
 use super::problem::Problems;
 use super::table::Table;
 use super::{Action, Body, Scene, Stepping, Target};
-use crate::body::{Inertial, InertialBlock};
-use crate::effect::{Load, Member};
+use crate::body::InertialBlock;
+use crate::effect::Load;
 use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
 
@@ -68,15 +68,9 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
             continue;
         }
         before = Some((k, false));
-        let (inertial, q_bp) = Inertial::new(&body.properties, body.pivot_b);
-        let member = Member {
-            lane: 0,
-            inertial,
-            q_pb: q_bp.inverse(),
-            body,
-        };
+        let member = body.member(0);
         let mut block = InertialBlock::default();
-        block.set(0, inertial);
+        block.set(0, member.inertial);
         let refuses = |load: &Load| info.refuses(load, &block);
         let under = |on: &[bool]| lasting(scene, k, &[member], on);
         let refused = times.sets.iter().find_map(|set| {
@@ -105,7 +99,7 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
                 _ => event,
             };
             let mut load = under(&times.sets[set].on);
-            if let Some(effect) = event.effect(0, &inertial, q_bp.inverse()) {
+            if let Some(effect) = event.effect(0, &member.inertial, member.q_pb) {
                 load.push(effect);
             }
             if let Some(refusal) = refuses(&load) {

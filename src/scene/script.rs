@@ -122,11 +122,6 @@ impl Script {
         &self.source
     }
 
-    /// Whether anything is to be changed.
-    pub fn is_changed(&self) -> bool {
-        !self.changes.is_empty()
-    }
-
     /// `PATH=VALUE`, as `argument` wrote it.
     pub fn set(&mut self, assignment: &str, argument: &str) -> Result<(), String> {
         let Some((path, value)) = assignment.split_once('=') else {

@@ -124,10 +124,10 @@ impl Group {
             ..Self::empty()
         };
         for (lane, body) in bodies.iter().enumerate() {
-            let (inertial, q_bp) = Inertial::new(&body.properties, body.pivot_b);
-            group.q_pb[lane] = q_bp.inverse();
-            group.inertial.set(lane, inertial);
-            group.state.set(lane, start(body, q_bp));
+            let member = body.member(lane);
+            group.q_pb[lane] = member.q_pb;
+            group.inertial.set(lane, member.inertial);
+            group.state.set(lane, body.start(member.q_pb));
         }
         group
     }
@@ -435,7 +435,7 @@ impl Group {
     }
 
     /// Each effect's own share, where any body wants to know it.
-    fn parts(&self, t: f64, block: &StateBlock) -> Parts {
+    fn parts(&self, t: f64, block: &StateBlock) -> Parts<'_> {
         match self.sources.iter().all(Vec::is_empty) {
             true => Parts::default(),
             false => Parts::of(&self.load, t, &self.inertial, block),
@@ -452,7 +452,7 @@ impl Group {
         lane: usize,
         state: State,
         (t, wrench): (f64, &WrenchBlock),
-        parts: &Parts,
+        parts: &Parts<'_>,
     ) -> Sample {
         let inertial = self.inertial.get(lane);
         let mut tau_w = wrench.get(lane).tau_w;
@@ -488,20 +488,6 @@ impl Group {
             q_wb: q_wp * self.q_pb[lane],
             omega_w: state.omega_w,
         }
-    }
-}
-
-/// The state a scene starts a body in: about its reference point, in its principal axes.
-fn start(body: &Body, q_bp: UnitQuaternion<f64>) -> State {
-    let (x_w, v_w) = match body.pivot_b {
-        Some(pivot_b) => (body.position_w + body.q_wb * pivot_b, Vector3::zeros()),
-        None => (body.position_w, body.velocity_w),
-    };
-    State {
-        x_w,
-        v_w,
-        q_wp: (body.q_wb * q_bp).into_inner(),
-        omega_w: body.omega_w,
     }
 }
 

@@ -587,12 +587,12 @@ impl<'s> Simulation<'s> {
 
     fn begin(&mut self, index: usize, at: f64) -> (Option<Picked>, Option<Done>) {
         let event = &self.scene.events[index];
-        match (&event.target, &event.action) {
-            (Target::All, Action::Switch { effect, on }) => {
+        match (&event.action, &event.target) {
+            (Action::Switch { effect, on }, _) => {
                 self.acting.on[*effect] = *on;
                 (None, Some(Done::Switched))
             }
-            (Target::Body(body), Action::Set(change)) => {
+            (Action::Set(change), Target::Body(body)) => {
                 let body = *body;
                 let group = &mut self.groups[self.home[body]];
                 group.set(body, change);
@@ -605,18 +605,34 @@ impl<'s> Simulation<'s> {
                 }
                 (None, Some(Done::Set(body)))
             }
-            (Target::Hit(bodies), Action::Click(click)) => match self.pick(bodies, click) {
+            (Action::Click(click), Target::Hit(bodies)) => match self.pick(bodies, click) {
                 None => (None, Some(Done::Missed)),
                 Some((body, picked)) => {
                     let event = event.on(body, click.at(picked.point_b));
                     (Some(picked), Some(self.act(index, body, event, at)))
                 }
             },
-            (Target::Body(body), _) => {
+            (
+                Action::Push { .. }
+                | Action::Torque { .. }
+                | Action::Impulse { .. }
+                | Action::AngularImpulse { .. },
+                Target::Body(body),
+            ) => {
                 let done = self.act(index, *body, event.clone(), at);
                 (None, Some(done))
             }
-            _ => (None, None),
+            // Notes are written by their times. No other action comes with another target.
+            (Action::Note(_), _)
+            | (
+                Action::Push { .. }
+                | Action::Torque { .. }
+                | Action::Impulse { .. }
+                | Action::AngularImpulse { .. }
+                | Action::Set(_)
+                | Action::Click(_),
+                _,
+            ) => (None, None),
         }
     }
 

@@ -9,7 +9,7 @@
 //! once are one source.
 
 use crate::body::{Inertial, InertialBlock, State, StateBlock};
-use crate::effect::{Called, Effect, Load, Member, WrenchBlock};
+use crate::effect::{Called, Effect, Load, WrenchBlock};
 use crate::scene::{Action, Event, Scene, SceneEffect, Target};
 use crate::trace::Subject;
 use nalgebra::Vector3;
@@ -20,15 +20,9 @@ pub const GYROSCOPIC: &str = "gyroscopic";
 /// Names every source of torque on each body; none where one says all there is to say.
 pub fn tell_apart(scene: &Scene, subjects: &mut [Subject]) {
     for (k, (subject, body)) in subjects.iter_mut().zip(&scene.bodies).enumerate() {
-        let (inertial, q_bp) = Inertial::new(&body.properties, body.pivot_b);
-        let member = Member {
-            lane: 0,
-            inertial,
-            q_pb: q_bp.inverse(),
-            body,
-        };
+        let member = body.member(0);
         let mut block = InertialBlock::default();
-        block.set(0, inertial);
+        block.set(0, member.inertial);
         let turns = |called: &Called| match called {
             // The weight of a free body, say, turns nothing.
             Called::Load(spec) => spec.on(&[member]).depends(&block).torque,
@@ -45,12 +39,19 @@ pub fn tell_apart(scene: &Scene, subjects: &mut [Subject]) {
         };
         let mut names: Vec<String> = lasting.map(name).collect();
         for event in scene.events.iter().filter(|event| may_reach(event, k)) {
-            let name = match event.action {
+            let name = match &event.action {
                 Action::Torque { .. } => "torque",
-                _ => "push",
+                Action::Push { .. } => "push",
+                Action::Click(click) if click.lasts > 0.0 => "push",
+                // At once, or none of a torque.
+                Action::Click(_)
+                | Action::Impulse { .. }
+                | Action::AngularImpulse { .. }
+                | Action::Set(_)
+                | Action::Switch { .. }
+                | Action::Note(_) => continue,
             };
-            let lasting = event.action.lasts() > 0.0;
-            if lasting && !names.iter().any(|known| known == name) {
+            if !names.iter().any(|known| known == name) {
                 names.push(name.to_owned());
             }
         }
@@ -70,14 +71,14 @@ fn may_reach(event: &Event, body: usize) -> bool {
 
 /// What each effect applies to a block, by the effect's name.
 #[derive(Default)]
-pub struct Parts(Vec<(String, WrenchBlock)>);
+pub struct Parts<'l>(Vec<(&'l str, WrenchBlock)>);
 
-impl Parts {
-    pub fn of(load: &Load, t: f64, inertial: &InertialBlock, state: &StateBlock) -> Self {
-        let part = |(name, effect): (&str, &dyn Effect)| {
+impl<'l> Parts<'l> {
+    pub fn of(load: &'l Load, t: f64, inertial: &InertialBlock, state: &StateBlock) -> Self {
+        let part = |(name, effect): (&'l str, &dyn Effect)| {
             let mut wrench = WrenchBlock::default();
             effect.add(t, inertial, state, &mut wrench);
-            (name.to_owned(), wrench)
+            (name, wrench)
         };
         Self(load.effects().map(part).collect())
     }

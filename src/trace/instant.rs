@@ -52,6 +52,11 @@ pub struct Subject {
 }
 
 impl Subject {
+    /// Whether both are of one swarm, and so alike but for how they start.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.swarm.is_some() && self.swarm == other.swarm
+    }
+
     /// What torque, momentum and inertia are about, in words.
     pub fn reference(&self) -> &'static str {
         match self.pivot_b {

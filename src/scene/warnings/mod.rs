@@ -14,7 +14,7 @@ use super::problem::{At, Problems};
 use super::table::{Node, Table};
 use super::{Action, Body, Event, Framed, Scene, Target, lasting};
 use crate::body::{Inertial, InertialBlock, State, StateBlock};
-use crate::effect::{Load, Member, Term, Wrench};
+use crate::effect::{Load, Term, Wrench};
 use crate::math::axis_angle;
 use motion::Motion;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
@@ -316,26 +316,11 @@ struct Alone {
 impl Alone {
     fn new(scene: &Scene, index: usize, on: &[bool]) -> Self {
         let body = &scene.bodies[index];
-        let (inertial, q_bp) = Inertial::new(&body.properties, body.pivot_b);
-        let (x_w, v_w) = match body.pivot_b {
-            Some(pivot_b) => (body.position_w + body.q_wb * pivot_b, Vector3::zeros()),
-            None => (body.position_w, body.velocity_w),
-        };
-        let member = Member {
-            lane: 0,
-            inertial,
-            q_pb: q_bp.inverse(),
-            body,
-        };
+        let member = body.member(0);
         Self {
-            inertial,
-            q_pb: q_bp.inverse(),
-            state: State {
-                x_w,
-                v_w,
-                q_wp: (body.q_wb * q_bp).into_inner(),
-                omega_w: body.omega_w,
-            },
+            inertial: member.inertial,
+            q_pb: member.q_pb,
+            state: body.start(member.q_pb),
             load: lasting(scene, index, &[member], on),
         }
     }
