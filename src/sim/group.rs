@@ -4,7 +4,7 @@ use super::Jump;
 use super::choose::{Choose, Setting};
 use super::sources::Parts;
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
-use crate::effect::{Frame, Load, Push, Term, WrenchBlock};
+use crate::effect::{Decay, Frame, Load, Push, Term, WrenchBlock};
 use crate::integrator::{Interval, Kind, Method, Refusal, Step, Stepper, Work};
 use crate::mass::tensor;
 use crate::scene::{Body, Event, Framed, Scene, lasting};
@@ -239,6 +239,12 @@ impl Group {
             .rfind(|&x| x < std::f64::consts::TAU);
         let before = self.before.as_ref().map(|stepper| turn(&stepper.state()));
         sane.or(before).unwrap_or(f64::NAN)
+    }
+
+    /// The larger damping rate times a step of `h`: how far velocities decay in it.
+    pub fn decay_in_a_step(&self, h: f64) -> f64 {
+        let rate = |decay: &Decay| decay.linear_rate().max(decay.angular_rate());
+        h * self.load.decay().map_or(0.0, rate)
     }
 
     pub fn is_gyroscopic(&self) -> bool {

@@ -101,6 +101,9 @@ pub enum SimError {
     Sink(#[from] SinkError),
 }
 
+/// Why numbers end, where it is not a method's doing.
+const BEYOND: &str = "a force, an impulse, a speed, a mass or a ratio of moments is too large or too small for 64-bit numbers, or for this method at this step; look at the events and the start";
+
 impl<'s> Simulation<'s> {
     /// Eight bodies go together by one method. Where a scene states an accuracy each goes alone, so
     /// that each has the method it needs.
@@ -223,7 +226,7 @@ impl<'s> Simulation<'s> {
             };
             if let Some((at, body)) = self.stretch(&stretch, first, sink)? {
                 schedule.stop_at(at);
-                return Err(self.not_finite(at, body, sink));
+                return Err(self.not_finite(at, body, self.cause(body), sink));
             }
             if stretch.happenings.is_empty() {
                 continue;
@@ -365,12 +368,12 @@ impl<'s> Simulation<'s> {
         };
         match bodies.iter().copied().find(lost) {
             None => Ok(()),
-            Some(body) => Err(self.not_finite(now, body, sink)),
+            Some(body) => Err(self.not_finite(now, body, BEYOND.to_owned(), sink)),
         }
     }
 
     /// Records the broken instant in full and says what happened.
-    fn not_finite(&self, at: Instant, body: usize, sink: &mut dyn Sink) -> SimError {
+    fn not_finite(&self, at: Instant, body: usize, cause: String, sink: &mut dyn Sink) -> SimError {
         let error = SimError::NotFinite {
             body: self.subjects[body].name.clone(),
             time: at.time,
@@ -379,7 +382,7 @@ impl<'s> Simulation<'s> {
                 "" => String::new(),
                 method => format!(", by {method}"),
             },
-            cause: self.cause(body),
+            cause,
         };
         let note = Note {
             body,
@@ -396,22 +399,32 @@ impl<'s> Simulation<'s> {
         }
     }
 
-    /// The likeliest reason for a state that is not finite.
+    /// The likeliest reason for a state that a method lost.
     fn cause(&self, body: usize) -> String {
         /// Radians a step, beyond which a term of second order in ω h is no longer small.
         const FAR: f64 = 0.1;
+        /// Radians a step of which a 64-bit number knows no part of a turn.
+        const ABSURD: f64 = 1e16;
         let group = self.group_of(body);
-        if group.steps == Some(Kind::Adaptive) {
+        let turned = group.turn_in_a_step(body, self.scene.step);
+        let absurd = !(turned < ABSURD);
+        if !absurd && group.steps == Some(Kind::Adaptive) {
             return "no step of its own was short enough to follow the motion; a force or torque there grows without bound, or the tolerance is below what 64-bit numbers resolve".to_owned();
         }
-        let turned = group.turn_in_a_step(body, self.scene.step);
-        if group.steps == Some(Kind::Fixed) && group.is_gyroscopic() && turned > FAR {
+        let decays = group.decay_in_a_step(self.scene.step);
+        if group.steps == Some(Kind::Fixed) && decays > 1.0 {
+            let decays = short(decays);
+            return format!(
+                "damping of c h = {decays} a step is too fast for this method; take a smaller step or another method"
+            );
+        }
+        if !absurd && group.steps == Some(Kind::Fixed) && group.is_gyroscopic() && turned > FAR {
             let turned = short(turned);
             return format!(
                 "it turned {turned} rad a step, too far for the gyroscopic term; take a smaller step or another method"
             );
         }
-        "a force, an impulse, a speed, a mass or a ratio of moments is too large or too small for 64-bit numbers, or for this method at this step; look at the events and the start".to_owned()
+        BEYOND.to_owned()
     }
 
     /// Ends and begins events and writes the log; true where a velocity jumped.
