@@ -1,0 +1,5 @@
+//! A very long time.
+
+pub fn section() -> String {
+    String::new()
+}
