@@ -60,6 +60,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     // Whatever the run came to, the file is closed whole and what there is of it is told.
     let summary = recorder.finish()?;
+    for warning in &outcome.warnings {
+        print::err(&format!("warning: {warning}"));
+    }
     if arguments.json {
         let mut report = Report::new(&scene, &subjects, &outcome, &summary, done.as_ref().err());
         report.plan = plan.as_ref().map(|plan| explain::report(plan, &subjects));

@@ -171,6 +171,7 @@ impl Sink for Recorder {
     fn note(&mut self, at: Instant, note: &Note) -> Result<(), SinkError> {
         let (level, colour) = match note.kind {
             NoteKind::Failure => (TextLogLevel::ERROR, look::FORCE),
+            NoteKind::Warning => (TextLogLevel::WARN, look::FORCE),
             _ => (
                 TextLogLevel::INFO,
                 look::BODIES[note.body % look::BODIES.len()],
@@ -184,15 +185,17 @@ impl Sink for Recorder {
         if let (Some(impulses), Some(strike)) = (&mut self.impulses, note.strike) {
             impulses.strike(&mut self.file, (at, when.clone()), subject, strike)?;
         }
+        self.file
+            .row(Store::Recording, "/events", when.clone(), &[&line])?;
         let lane = format!("/events/{}", subject.name);
         let state = match note.kind {
             NoteKind::Begins => StateChange::single("acts"),
             NoteKind::Instant => StateChange::single("struck"),
             NoteKind::Failure => StateChange::single("not finite"),
             NoteKind::Ends => StateChange::new().with_state([""]),
+            // What acts goes on acting.
+            NoteKind::Warning => return Ok(()),
         };
-        self.file
-            .row(Store::Recording, "/events", when.clone(), &[&line])?;
         self.file.row(Store::Recording, lane, when, &[&state])?;
         Ok(())
     }

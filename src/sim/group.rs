@@ -1,7 +1,7 @@
 //! Up to eight bodies stepped together, and their translation to and from body axes.
 
 use super::Jump;
-use super::choose::{Choose, Setting};
+use super::choose::{Choice, Choose, Setting};
 use super::sources::Parts;
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
 use crate::effect::{Decay, Frame, Load, Push, Term, WrenchBlock};
@@ -34,6 +34,8 @@ pub struct Group {
     pub method: &'static str,
     /// How it gets through time.
     pub steps: Option<Kind>,
+    /// Its way since it last set out.
+    pub choice: Option<Choice>,
     /// What the steppers before this one did.
     done: Work,
 }
@@ -107,6 +109,7 @@ impl Group {
             kept: Vec::new(),
             method: "",
             steps: None,
+            choice: None,
             done: Work::default(),
         };
         for (lane, body) in bodies.iter().enumerate() {
@@ -131,6 +134,7 @@ impl Group {
         self.done = self.work();
         self.method = choice.method.info().name;
         self.steps = Some(choice.method.info().kind);
+        self.choice = Some(choice);
         self.stepper = Some(choice.start(interval, t, &self.state));
     }
 

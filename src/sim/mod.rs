@@ -7,10 +7,12 @@ mod script;
 mod sizes;
 mod sources;
 mod truth;
+mod watch;
 
 pub use choose::{Choice, Choose, Setting, Stated};
 pub use sizes::Sizes;
 pub use sources::GYROSCOPIC;
+pub use watch::{Drifts, Warning};
 
 use crate::body::LANES;
 use crate::integrator::{Kind, Step, Work};
@@ -24,6 +26,7 @@ use schedule::{Schedule, Stretch};
 use script::Happening;
 use std::cell::RefCell;
 use truth::Truth;
+use watch::{Made, Watch};
 
 /// A scene being stepped.
 pub struct Simulation<'s> {
@@ -35,8 +38,11 @@ pub struct Simulation<'s> {
     /// Indices of the events that act now.
     active: Vec<usize>,
     threads: usize,
-    /// By body; none where no stream compares with the truth.
+    /// By body.
     truths: Vec<RefCell<Truth>>,
+    watches: Vec<RefCell<Watch>>,
+    /// Whether a stream compares with the truth.
+    compared: bool,
     /// Whether steps are timed.
     timed: bool,
     /// Mean wall time of the last stretch's steps of a group, s.
@@ -56,6 +62,8 @@ pub struct Outcome {
     pub work: Work,
     /// All bodies at the end, or where the run stopped.
     pub end: Vec<Sample>,
+    /// What drifted beyond what is to be expected of the method.
+    pub warnings: Vec<Warning>,
 }
 
 /// A body at the instant an event began.
@@ -129,6 +137,8 @@ impl<'s> Simulation<'s> {
             active: Vec::new(),
             threads: std::thread::available_parallelism().map_or(1, usize::from),
             truths: truths(scene),
+            watches: vec![RefCell::default(); scene.bodies.len()],
+            compared: is_compared(scene),
             timed: scene.record.streams.contains("step_time"),
             step_time: None,
         };
@@ -200,6 +210,10 @@ impl<'s> Simulation<'s> {
         let works = self.groups.iter().map(Group::work);
         outcome.work = works.fold(Work::default(), |a, b| a + b);
         outcome.end = self.samples(now.time);
+        let watches = self.watches.iter().map(RefCell::borrow);
+        outcome.warnings = watches
+            .flat_map(|watch| watch.told().cloned().collect::<Vec<_>>())
+            .collect();
         (outcome, done)
     }
 
@@ -216,9 +230,7 @@ impl<'s> Simulation<'s> {
         let all: Vec<usize> = (0..self.subjects.len()).collect();
         self.must_be_finite(start, &all, sink)?;
         self.set_out(&all, schedule, chooser);
-        let mut samples = self.samples(start.time);
-        self.judge(0, &mut samples, start.time);
-        sink.samples(start, 0..samples.len(), &samples)?;
+        self.deliver(0, start, self.samples(start.time), sink)?;
         loop {
             let first = schedule.now();
             let Some(stretch) = schedule.next_stretch() else {
@@ -260,9 +272,7 @@ impl<'s> Simulation<'s> {
             self.groups[group].set_out(chooser, now, until);
         }
         for &body in bodies {
-            let Some(truth) = self.truths.get(body) else {
-                continue;
-            };
+            let truth = &self.truths[body];
             let group = self.group_of(body);
             let sample = group.sample(body, now);
             let simulated = (&self.subjects[body], &sample, group, body);
@@ -344,11 +354,10 @@ impl<'s> Simulation<'s> {
         for (k, kept) in stretch.kept.iter().enumerate() {
             if kept.display {
                 let groups = self.groups.iter();
-                let mut samples: Vec<Sample> = groups
+                let samples: Vec<Sample> = groups
                     .flat_map(|group| group.samples_kept(k, kept.at.time))
                     .collect();
-                self.judge(0, &mut samples, kept.at.time);
-                sink.samples(kept.at, 0..self.subjects.len(), &samples)?;
+                self.deliver(0, kept.at, samples, sink)?;
             }
         }
         Ok(())
@@ -407,7 +416,7 @@ impl<'s> Simulation<'s> {
         const ABSURD: f64 = 1e16;
         let group = self.group_of(body);
         let turned = group.turn_in_a_step(body, self.scene.step);
-        let absurd = !(turned < ABSURD);
+        let absurd = turned.is_nan() || turned > ABSURD;
         if !absurd && group.steps == Some(Kind::Adaptive) {
             return "no step of its own was short enough to follow the motion; a force or torque there grows without bound, or the tolerance is below what 64-bit numbers resolve".to_owned();
         }
@@ -497,23 +506,55 @@ impl<'s> Simulation<'s> {
         sink: &mut dyn Sink,
     ) -> Result<(), SinkError> {
         for &body in bodies {
-            let mut sample = [self.group_of(body).sample(body, now.time)];
-            self.judge(body, &mut sample, now.time);
-            sink.samples(now, body..body + 1, &sample)?;
+            let sample = vec![self.group_of(body).sample(body, now.time)];
+            self.deliver(body, now, sample, sink)?;
         }
         Ok(())
     }
 
-    /// Adds to the samples of bodies from `first` on how far they are from the truth, where it is
-    /// known, and what a step took.
-    fn judge(&self, first: usize, samples: &mut [Sample], t: f64) {
-        for (body, sample) in (first..).zip(samples) {
+    /// Delivers the samples of bodies from `first` on, with how far they are from the truth, where it is known and
+    /// recorded, and what a step took; and then what drifts.
+    fn deliver(
+        &self,
+        first: usize,
+        at: Instant,
+        mut samples: Vec<Sample>,
+        sink: &mut dyn Sink,
+    ) -> Result<(), SinkError> {
+        let mut news = Vec::new();
+        for (body, sample) in (first..).zip(&mut samples) {
             sample.step_time = self.step_time;
-            if let Some(truth) = self.truths.get(body) {
-                let subject = &self.subjects[body];
-                sample.deviation = truth.borrow_mut().deviation(subject, sample, t);
+            let subject = &self.subjects[body];
+            let mut truth = self.truths[body].borrow_mut();
+            let deviation = truth.deviation(subject, sample, at.time);
+            let group = self.group_of(body);
+            if let Some(choice) = group.choice {
+                let made = Made {
+                    at,
+                    body,
+                    subject,
+                    choice,
+                    step: self.scene.step,
+                    free: truth.is_exact(),
+                };
+                let mut watch = self.watches[body].borrow_mut();
+                news.extend(watch.look(&made, sample, &deviation));
+            }
+            if self.compared {
+                sample.deviation = deviation;
             }
         }
+        sink.samples(at, first..first + samples.len(), &samples)?;
+        for warning in news {
+            let note = Note {
+                body: warning.body,
+                text: warning.to_string(),
+                kind: NoteKind::Warning,
+                strike: None,
+            };
+            sink.note(at, &note)?;
+        }
+        Ok(())
     }
 
     fn group_of(&self, body: usize) -> &Group {
@@ -541,19 +582,24 @@ impl<'s> Simulation<'s> {
     }
 }
 
-/// The true motion of every body, where a stream compares with it.
-fn truths(scene: &Scene) -> Vec<RefCell<Truth>> {
+fn is_compared(scene: &Scene) -> bool {
     let compared = ["error", "drift"];
-    if !compared
+    let mut recorded = compared
         .iter()
-        .any(|name| scene.record.streams.contains(name))
-    {
-        return Vec::new();
-    }
+        .map(|name| scene.record.streams.contains(name));
+    recorded.any(|is| is)
+}
+
+/// The true motion of every body, where a stream compares with it; else what its model keeps.
+fn truths(scene: &Scene) -> Vec<RefCell<Truth>> {
+    let truth = match is_compared(scene) {
+        true => Truth::new,
+        false => |_| Truth::kept_alone(),
+    };
     let alone = group::groups(&scene.bodies, 1);
     alone
         .into_iter()
-        .map(|body| RefCell::new(Truth::new(body)))
+        .map(|body| RefCell::new(truth(body)))
         .collect()
 }
 

@@ -66,6 +66,24 @@ impl Truth {
         }
     }
 
+    /// Of a body of which no exact motion goes along.
+    pub fn kept_alone() -> Self {
+        Self {
+            known: Known::Nothing,
+            energy: 0.0,
+            momentum: 0.0,
+        }
+    }
+
+    /// Whether nothing turns the body.
+    pub fn is_exact(&self) -> bool {
+        match &self.known {
+            Known::Exact { .. } => true,
+            Known::Kept(kept) => kept.along.is_none(),
+            Known::Nothing => false,
+        }
+    }
+
     /// Strikes the true body as the simulated one is struck.
     pub fn strike(&mut self, index: usize, impulse: Framed, point: Option<Framed>, at: f64) {
         if let Known::Exact { body, now } = &mut self.known {

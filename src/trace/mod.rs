@@ -39,6 +39,8 @@ pub enum NoteKind {
     Begins,
     Ends,
     Instant,
+    /// Something drifts.
+    Warning,
     /// Something went wrong.
     Failure,
 }

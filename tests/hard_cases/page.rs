@@ -1,6 +1,6 @@
 //! docs/stability.md, from the cells.
 
-use crate::cells::{Case, Must};
+use crate::cells::Must;
 use crate::run::Seen;
 use crate::{Row, Table, infos, long, peers, tables};
 use std::collections::BTreeSet;
@@ -14,6 +14,8 @@ come to. Every case goes through the scene reader and the simulation, by every m
 - `4e-16`: the error, within the bound that the method's order, or the line under the table, promises.
 - **`4e-3`**: it degrades here, to within the bounds and for the reason of the line under the table.
 - *`2`*: nothing is promised: a step is so long, or a body so thin, that its order means nothing. The motion is some motion.
+- !: the watchdog warns of it: energy, angular momentum or attitude is off by more than the method declares, by a hundredth or by half a
+  radian. An error without a mark keeps energy and momentum, and no exact motion is known beside it.
 - lost: the run stops, with the time, the step, the body, the method and the likeliest cause. refused: the scene is, with the reason.
 - –: not run, for the reason below.
 
@@ -36,12 +38,16 @@ pub fn coarse(x: f64) -> String {
     }
 }
 
-fn entry(case: &Case, must: Must, seen: &Seen) -> String {
-    let _ = case;
+fn entry(must: Must, seen: &Seen) -> String {
     match (seen, must) {
-        (Seen::Off { off }, Must::Degrade(..)) => format!("**{}**", coarse(*off)),
-        (Seen::Off { off }, Must::RunOrBeLost) => format!("*{}*", coarse(*off)),
-        (Seen::Off { off }, _) => coarse(*off),
+        (Seen::Off { off, warned }, must) => {
+            let told = if *warned > 0 { "!" } else { "" };
+            match must {
+                Must::Degrade(..) => format!("**{}**{told}", coarse(*off)),
+                Must::RunOrBeLost => format!("*{}*{told}", coarse(*off)),
+                _ => coarse(*off) + told,
+            }
+        }
         (Seen::Refused(_), _) => "refused".to_owned(),
         (Seen::Lost { .. }, _) => "lost".to_owned(),
         (Seen::NotRun, _) => "–".to_owned(),
@@ -58,7 +64,7 @@ fn matrix(table: &Table) -> String {
     for (k, info) in infos().enumerate() {
         let _ = write!(text, "\n| {} |", info.name);
         for Row { case, seen } in &table.rows {
-            let _ = write!(text, " {} |", entry(case, case.must(info), &seen[k]));
+            let _ = write!(text, " {} |", entry(case.must(info), &seen[k]));
         }
     }
     text + "\n\n" + &reasons(table)

@@ -10,9 +10,10 @@ use torquescope::trace::{Instant, Motion, Note, Sample, Sink, SinkError, Track};
 /// What a cell came to.
 #[derive(Clone, Debug)]
 pub enum Seen {
-    /// It ran to its end, so far off.
+    /// It ran to its end, so far off, and the watchdog told of so many drifts.
     Off {
         off: f64,
+        warned: usize,
     },
     /// The scene was refused, with this message.
     Refused(String),
@@ -92,6 +93,7 @@ pub fn see(case: &Case, info: &MethodInfo) -> Seen {
             );
             Seen::Off {
                 off: (case.problem.off)(end),
+                warned: outcome.warnings.len(),
             }
         }
         Err(error) => {

@@ -54,7 +54,7 @@ const INFO: MethodInfo = MethodInfo {
     reversible: false,
     keeps_momentum: true,
     exact_free: false,
-    preserves: "a free body's momentum; all else to its tolerance",
+    preserves: "a free body's momentum, of a thin one to its tolerance; all else to its tolerance",
     cost: Cost {
         evaluations: None,
         // A step of its own, tolerance 1e-12.
