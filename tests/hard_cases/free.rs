@@ -76,7 +76,7 @@ fn scene(r: &Reference, mass: f64, more: &str, omega_w: &[f64]) -> String {
 }
 
 /// A free body of the oracle's table.
-fn free(name: &str, hard: &'static str, cells: Vec<Cell>) -> Case {
+pub fn free(name: &str, hard: &'static str, cells: Vec<Cell>) -> Case {
     varied(name, name, hard, 1.0, "", cells)
 }
 

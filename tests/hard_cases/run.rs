@@ -1,8 +1,11 @@
 //! A cell, run as a user runs a scene.
 
 use crate::cells::{Case, Must};
+use nalgebra::Matrix3;
 use std::ops::Range;
+use torquescope::body::Inertial;
 use torquescope::integrator::{Kind, MethodInfo};
+use torquescope::mass::MassProperties;
 use torquescope::scene::Scene;
 use torquescope::sim::{SimError, Simulation};
 use torquescope::trace::{Instant, Motion, Note, Sample, Sink, SinkError, Track};
@@ -125,4 +128,12 @@ pub fn motions(text: &str) -> (Vec<Motion>, Result<(), SimError>) {
     };
     let (_, done) = Simulation::new(&scene).on_threads(1).run(&mut sink);
     (sink.motions, done)
+}
+
+/// A body of these principal moments, 1 kg.
+pub fn body(moments: [f64; 3]) -> Inertial {
+    let tensor = Matrix3::from_diagonal(&moments.into());
+    let properties =
+        MassProperties::new(1.0, tensor, [false; 3]).unwrap_or_else(|why| panic!("{why}"));
+    Inertial::new(&properties, None).0
 }
