@@ -592,14 +592,14 @@ fn is_compared(scene: &Scene) -> bool {
 
 /// The true motion of every body, where a stream compares with it; else what its model keeps.
 fn truths(scene: &Scene) -> Vec<RefCell<Truth>> {
-    let truth = match is_compared(scene) {
-        true => Truth::new,
-        false => |_| Truth::kept_alone(),
-    };
+    if !is_compared(scene) {
+        let alone = scene.bodies.iter().map(|_| Truth::kept_alone());
+        return alone.map(RefCell::new).collect();
+    }
     let alone = group::groups(&scene.bodies, 1);
     alone
         .into_iter()
-        .map(|body| RefCell::new(truth(body)))
+        .map(|body| RefCell::new(Truth::new(body)))
         .collect()
 }
 

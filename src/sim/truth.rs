@@ -125,8 +125,11 @@ impl Truth {
 
     /// How far the simulated body is off at time `t`.
     pub fn deviation(&mut self, subject: &Subject, sample: &Sample, t: f64) -> Deviation {
+        if matches!(self.known, Known::Nothing) {
+            return Deviation::default();
+        }
         let momentum_w = subject.momentum_w(&sample.motion);
-        let kinetic = subject.energy(&sample.motion);
+        let kinetic = subject.energy_with(&sample.motion, momentum_w);
         let (attitude, energy, momentum) = match &mut self.known {
             Known::Nothing => return Deviation::default(),
             Known::Exact { body, now } => {
@@ -136,8 +139,9 @@ impl Truth {
                 };
                 let off = angle_between(truth.q_wb, sample.motion.q_wb);
                 let true_momentum_w = subject.momentum_w(&truth);
-                let energy = kinetic - subject.energy(&truth);
-                self.energy = self.energy.max(subject.energy(&truth));
+                let true_energy = subject.energy_with(&truth, true_momentum_w);
+                let energy = kinetic - true_energy;
+                self.energy = self.energy.max(true_energy);
                 self.momentum = self.momentum.max(true_momentum_w.norm());
                 (Some(off), energy, (momentum_w - true_momentum_w).norm())
             }

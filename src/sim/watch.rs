@@ -95,6 +95,8 @@ pub struct Made<'a> {
     pub free: bool,
 }
 
+/// Less is rounding of what is compared.
+const FLOOR: f64 = 256.0 * f64::EPSILON;
 /// A part of what is, that is another motion whatever the method.
 const LARGE: f64 = 0.01;
 /// And of an attitude, rad.
@@ -126,6 +128,9 @@ impl Watch {
             let Some(off) = off.map(f64::abs).filter(|off| off.is_finite()) else {
                 continue;
             };
+            if off <= FLOOR {
+                continue;
+            }
             if let Some(told) = &mut self.told[k] {
                 told.worst = told.worst.max(off);
                 continue;
@@ -155,7 +160,7 @@ impl Watch {
         let radians = self.rate * made.at.time;
         let stages = f64::from(info.cost.evaluations.unwrap_or(1).max(1));
         // Some roundings a stage and a radian, all the same way; they seldom are.
-        let rounding = f64::EPSILON * (256.0 + 8.0 * (stages * steps + radians));
+        let rounding = FLOOR + 8.0 * f64::EPSILON * (stages * steps + radians);
         let fixed = info.kind == Kind::Fixed && made.free;
         let keeps = match drifts {
             Drifts::Length => true,

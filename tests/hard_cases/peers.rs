@@ -13,8 +13,9 @@ const HEAD: &str = "
 
 The same bodies, steps and ends by Rapier 0.36 (f64, as by default), MuJoCo 4.0 (its Euler, and its RK4) and Bullet 3.2.7 through
 Python, as benches/peers/hard_cases.py found it; beside them `rk4`, what a scene has that names no method, and the least
-error there is here, by whichever method. ok: within 1e-3 rad. lost: no number any more, or the engine gave the motion up. –: the
-engine has no means for it (MuJoCo's damping does not know the inertia; Bullet's bodies take no fixed point through Python).
+error there is here, by whichever method. ok: within 1e-3 rad. lost: no number any more, or the engine gave the motion up. Rapier
+and Bullet let no step turn a body by more than an eighth of a turn, whatever it should. –: the engine has no means for it
+(MuJoCo's damping does not know the inertia; Bullet's bodies take no fixed point through Python).
 
 | case | Rapier | MuJoCo | MuJoCo, RK4 | Bullet | rk4 here | least here |
 | --- | --- | --- | --- | --- | --- | --- |

@@ -1,5 +1,7 @@
 //! The two theta series (α, β) whose quotient is the attitude about L.
 
+use crate::math::power;
+
 #[derive(Clone, Debug)]
 pub enum Series {
     /// Alternating series in e^{iν}, by the nome.
@@ -41,15 +43,15 @@ impl Nome {
             alpha: [1, 2, 3].map(|j| {
                 let sign = alternate(j);
                 pair(
-                    sign * q.powi(j * (2 * j - 1)) * kappa.powi(j),
-                    sign * q.powi(2 * j * j) * epsilon.powi(j),
+                    sign * power(q, j * (2 * j - 1)) * power(kappa, j),
+                    sign * power(q, 2 * j * j) * power(epsilon, j),
                 )
             }),
             beta: [0, 1, 2].map(|j| {
                 let sign = alternate(j);
                 pair(
-                    sign * q.powi(j * (2 * j + 1)) * kappa.powi(j) * root_k,
-                    sign * q.powi(2 * j * j + 2 * j) * root_q * epsilon.powi(j) * root_e,
+                    sign * power(q, j * (2 * j + 1)) * power(kappa, j) * root_k,
+                    sign * power(q, 2 * j * j + 2 * j) * root_q * power(epsilon, j) * root_e,
                 )
             }),
         }
@@ -98,7 +100,7 @@ impl Complementary {
             exponent,
             terms: [0, 1, 2, 3].map(|j| {
                 let (sin, cos) = libm::sincos(f64::from(2 * j + 1) * a0);
-                let weight = nome.powi(j * j);
+                let weight = power(nome, j * j);
                 (weight * cos, weight * sin)
             }),
         }
@@ -113,18 +115,18 @@ impl Complementary {
         // With d = e^{-2|y|}: 2 cosh is 1 + d^s, 2 sinh is 1 - d^s = (1 - d)(1 + d + ... + d^{s-1}).
         let d = 1.0 + fall;
         let d2 = d * d;
-        let (mut power, mut chain, mut weight) = (d, 1.0, 1.0);
+        let (mut rest, mut chain, mut weight) = (d, 1.0, 1.0);
         let (mut ar, mut ai, mut br, mut bi) = (0.0, 0.0, 0.0, 0.0);
         let mut sign = 1.0;
         for &(cos, sin) in &self.terms {
-            let cosh = weight * (1.0 + power);
+            let cosh = weight * (1.0 + rest);
             let sinh = -weight * side * fall * chain;
             ar += cos * cosh;
             ai -= sin * sinh;
             br += sign * cos * sinh;
             bi -= sign * sin * cosh;
-            chain += power * (1.0 + d);
-            power *= d2;
+            chain += rest * (1.0 + d);
+            rest *= d2;
             weight *= grown;
             sign = -sign;
         }
