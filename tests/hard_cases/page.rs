@@ -104,7 +104,7 @@ fn messages() -> String {
                     let why = said
                         .lines()
                         .next()
-                        .and_then(|line| line.split(": hard: ").nth(1))
+                        .and_then(|line| line.split("hard: ").nth(1))
                         .unwrap_or(said);
                     refused.insert(why.replace(info.name, "METHOD"));
                 }

@@ -390,8 +390,9 @@ impl Body {
         !interval.load.applies() && still(VELOCITY) && still(SPIN)
     }
 
-    /// One step to `until` in which nothing changes.
+    /// One step to `until` in which nothing changes. (What is left has squares of 0.)
     fn rest_until(&mut self, until: f64) {
+        (self.y[VELOCITY], self.y[SPIN]) = ([0.0; 4], [0.0; 4]);
         (self.from, self.h, self.reached) = (self.reached, until - self.reached, until);
         self.y0 = self.y;
         self.dense = Some([ZERO; 7]);
