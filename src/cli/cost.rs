@@ -1,9 +1,10 @@
 //! `cost SCENE`: what accuracy costs on this scene, by every method.
 
-use super::{Wrong, print};
+use super::stop::Stop;
+use super::{Told, Wrong, print};
 use crate::cost::{self, Advice, Cost, Ladder, Progress, Race, Rung, Spread, plot};
 use crate::integrator::{self, METHODS, Method};
-use crate::record::{Heading, RecordError, Recorder};
+use crate::record::{Destination, Heading, RecordError, Recorder};
 use crate::scene::{Scene, StateRate, Stepping};
 use crate::sim::{Choose, Simulation};
 use crate::trace::{StreamSet, short};
@@ -11,9 +12,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::fs::OpenOptions;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 /// Show what accuracy costs in time on a scene, by every method over a ladder of steps.
@@ -40,6 +40,9 @@ pub struct Arguments {
     /// Print every setting that was measured.
     #[arg(long)]
     all: bool,
+    /// Replace plots and a recording of that name.
+    #[arg(long)]
+    force: bool,
     /// Print the table alone: no plots, no recording.
     #[arg(long, conflicts_with = "out")]
     table: bool,
@@ -72,21 +75,22 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let places = Places::of(arguments, &scene);
     if !arguments.table {
-        places.can_be_written()?;
+        places.can_be_written(arguments.force)?;
     }
-    let stop = stop_on_interrupt()?;
+    let stop = Stop::listen()?;
     let bar = progress_bar(ladder.methods.len());
     let mut watch = |progress: Progress| {
         bar.set_position(progress.done as u64);
         bar.set_message(progress.method);
-        match stop.load(Ordering::Relaxed) {
+        match stop.asked().load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }
     };
     let cost = ladder.measure(&scene, &weigh, &mut watch)?;
     bar.finish_and_clear();
-    if stop.load(Ordering::Relaxed) {
+    let interrupted = stop.code();
+    if interrupted.is_some() {
         print::err("interrupted: this is what was measured until then");
     }
     if cost.rungs.is_empty() {
@@ -101,9 +105,18 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         print::out(&table(&scene, &cost, &advice, arguments.all))?;
     }
     if !arguments.table {
-        files(&places, &scene, &ladder.methods, &cost, &advice)?;
+        files(
+            &places,
+            &scene,
+            &ladder.methods,
+            (&cost, &advice),
+            arguments.force,
+        )?;
     }
-    Ok(())
+    match interrupted {
+        Some(code) => Err(Told(code).into()),
+        None => Ok(()),
+    }
 }
 
 fn accuracy(arguments: &Arguments, scene: &Scene) -> anyhow::Result<f64> {
@@ -149,19 +162,6 @@ fn methods(names: &[String]) -> anyhow::Result<Vec<&'static dyn Method>> {
         found.iter().any(|one| one.info().name == name)
     };
     Ok(METHODS.iter().copied().filter(named).collect())
-}
-
-/// Set by ctrl-C, which then no longer ends the program at once.
-fn stop_on_interrupt() -> anyhow::Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let set = Arc::clone(&stop);
-    ctrlc::set_handler(move || {
-        // A second one means it.
-        if set.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    })?;
-    Ok(stop)
 }
 
 fn progress_bar(methods: usize) -> ProgressBar {
@@ -408,7 +408,7 @@ impl Places {
 
     /// Before anything is measured: what cannot be written should not cost a minute first, and what
     /// is there and is no earlier result was put there for something else.
-    fn can_be_written(&self) -> anyhow::Result<()> {
+    fn can_be_written(&self, force: bool) -> anyhow::Result<()> {
         let kinds: [(&PathBuf, &[u8]); 3] = [
             (&self.svg, b"<svg"),
             (&self.png, b"\x89PNG"),
@@ -435,6 +435,12 @@ impl Places {
                 ))
                 .into());
             }
+            if !force && !content.is_empty() {
+                return Err(Wrong(format!(
+                    "{shown} exists; --force replaces it, or choose another --out"
+                ))
+                .into());
+            }
         }
         Ok(())
     }
@@ -445,13 +451,14 @@ fn files(
     places: &Places,
     scene: &Scene,
     methods: &[&'static dyn Method],
-    cost: &Cost,
-    advice: &Advice<'_>,
+    (cost, advice): (&Cost, &Advice<'_>),
+    force: bool,
 ) -> anyhow::Result<()> {
     let title = format!("What accuracy costs: {}", scene.title);
     plot::svg(cost, &title, &places.svg)?;
     plot::png(cost, &title, &places.png)?;
-    record(scene, methods, cost, advice, &places.recording)?;
+    let to = Destination::new(&places.recording).replacing(force);
+    record(scene, methods, cost, advice, &to)?;
     print::err(&format!(
         "{}, {}, {recording}\nto open it: torquescope view {recording}",
         places.svg.display(),
@@ -470,7 +477,7 @@ fn record(
     methods: &[&'static dyn Method],
     cost: &Cost,
     advice: &Advice<'_>,
-    path: &Path,
+    to: &Destination,
 ) -> anyhow::Result<()> {
     let size = Heading::of(scene, &Simulation::new(scene)).size();
     let mut race = Race::new(scene, methods, FRAME, 2.5 * size)?;
@@ -483,7 +490,7 @@ fn record(
     heading.title = format!("What accuracy costs: {}", scene.title);
     heading.notes = notes(scene, cost, advice, &race);
     heading.price = Some(cost.clone());
-    let mut recorder = Recorder::create(path, &heading, &subjects)?;
+    let mut recorder = Recorder::create(to, &heading, &subjects)?;
     race.run(&mut recorder)?;
     recorder.finish()?;
     Ok(())

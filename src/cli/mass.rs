@@ -47,6 +47,9 @@ pub struct Arguments {
     /// Draw the robot's links as ellipsoids of the same inertia, into this recording.
     #[arg(long, value_name = "FILE.rrd")]
     record: Option<PathBuf>,
+    /// Replace a recording of that name.
+    #[arg(long)]
+    force: bool,
     /// Print one JSON object with every digit.
     #[arg(long)]
     json: bool,
@@ -250,7 +253,8 @@ fn robot(arguments: &Arguments) -> anyhow::Result<()> {
         print::out(&robot_text(path, &robot, &judged))?;
     }
     if let Some(out) = &arguments.record {
-        record::links(out, &robot)?;
+        let to = record::Destination::new(out).replacing(arguments.force);
+        record::links(&to, &robot)?;
         if !arguments.json {
             print::out(&format!("drawn: {}", out.display()))?;
         }

@@ -10,9 +10,11 @@ mod lists;
 mod mass;
 mod new;
 mod print;
+mod recover;
 mod run;
 mod scenes;
 mod schema;
+mod stop;
 mod verify;
 mod view;
 
@@ -43,6 +45,7 @@ enum Verb {
     Run(run::Arguments),
     Cost(cost::Arguments),
     View(view::Arguments),
+    Recover(recover::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
     Scenes(scenes::Arguments),
@@ -65,6 +68,7 @@ pub fn main() -> ExitCode {
         Verb::Run(arguments) => run::run(&arguments),
         Verb::Cost(arguments) => cost::run(&arguments),
         Verb::View(arguments) => view::run(&arguments),
+        Verb::Recover(arguments) => recover::run(&arguments),
         Verb::Check(arguments) => check::run(&arguments),
         Verb::New(arguments) => new::run(&arguments),
         Verb::Scenes(arguments) => scenes::run(&arguments),

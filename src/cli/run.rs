@@ -1,14 +1,16 @@
 //! `run SCENE`: simulate, record, say what happened; of a recording the same again.
 
-use super::{Wrong, explain, print, verify, view};
+use super::stop::Stop;
+use super::{Told, Wrong, explain, print, verify, view};
 use crate::cost::{Plan, PlanError};
 use crate::effect::Profile;
-use crate::record::{self, Heading, Made, Provenance, RecordError, Recorder, Summary};
+use crate::record::{self, Destination, Heading, Made, Provenance, RecordError, Recorder, Summary};
 use crate::scene::{Event, Finding, Scene, SceneError, Script, Stepping};
 use crate::sim::{Blow, Outcome, SimError, Simulation, Warning};
 use crate::trace::{Sample, Subject, short, short_numbers, short_vector};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Simulate a scene and record it.
 ///
@@ -25,6 +27,17 @@ pub struct Arguments {
     /// recording that is run again its name with -again.rrd].
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
+    /// Replace a recording of that name.
+    #[arg(long)]
+    force: bool,
+    /// What may be lost of the last of a recording when the program is killed (s).
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 0.5,
+        allow_hyphen_values = true
+    )]
+    save_every: f64,
     /// Give a value of the scene another, such as body.cone.mass=2, effects.damping.angular=0.1,
     /// event.0.force=[1,0,0]; again for more.
     #[arg(long, value_name = "PATH=VALUE", allow_hyphen_values = true)]
@@ -78,6 +91,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         ))
         .into());
     }
+    if Duration::try_from_secs_f64(arguments.save_every).is_err() {
+        return Err(Wrong(format!(
+            "--save-every {:?} is no time; write seconds, such as 0.5",
+            arguments.save_every
+        ))
+        .into());
+    }
     let made = made(arguments)?;
     if arguments.verify {
         let Some(made) = &made else {
@@ -91,15 +111,17 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let scenes = scenes(arguments, made.as_ref())?;
     let path = place(arguments, made.is_some(), &scenes[0])?;
+    let to = arguments.destination(&path);
+    to.check()?;
+    let stop = Stop::listen()?;
     let plans = plans(&scenes, arguments.explain)?;
     let page = match arguments.view {
         true => Some(view::bind(&path, &arguments.serve)?),
         false => None,
     };
     let headings = headings(&scenes, arguments, made.is_some());
-    let start =
-        |heading: &Heading, subjects: &[Subject]| Recorder::create(&path, heading, subjects);
-    let (ran, summary) = record(&scenes, &plans, &headings, start)?;
+    let start = |heading: &Heading, subjects: &[Subject]| Recorder::create(&to, heading, subjects);
+    let (ran, summary) = record((&scenes, &plans), &headings, &stop, start)?;
     for warning in ran.iter().flat_map(|ran| &ran.outcome.warnings) {
         print::err(&format!("warning: {warning}"));
     }
@@ -112,6 +134,13 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         .iter()
         .filter_map(|ran| ran.done.as_ref().err().map(ToString::to_string))
         .collect();
+    if let Some(code) = stop.code() {
+        print::err(&format!(
+            "{}; everything up to that instant is recorded",
+            failed.join("\n")
+        ));
+        return Err(Told(code).into());
+    }
     if let Some(page) = page {
         for error in &failed {
             print::err(error);
@@ -132,6 +161,15 @@ impl Arguments {
     pub(super) fn changes(&self) -> bool {
         let numbers = [self.until, self.step, self.accuracy];
         !self.set.is_empty() || self.method.is_some() || numbers.iter().any(Option::is_some)
+    }
+
+    /// A recording at some place, on the terms of the command line.
+    pub(super) fn destination(&self, path: &Path) -> Destination {
+        Destination {
+            // What is no time has been refused.
+            keeps_up: Duration::try_from_secs_f64(self.save_every).unwrap_or(Duration::MAX),
+            ..Destination::new(path).replacing(self.force)
+        }
     }
 
     pub(super) fn views(&self) -> bool {
@@ -273,15 +311,15 @@ pub(super) struct Ran {
 
 /// Runs scenes, one after another, into one file.
 pub(super) fn record(
-    scenes: &[Scene],
-    plans: &[Option<Plan>],
+    (scenes, plans): (&[Scene], &[Option<Plan>]),
     headings: &[Heading],
+    stop: &Stop,
     start: impl Fn(&Heading, &[Subject]) -> Result<Recorder, RecordError>,
 ) -> anyhow::Result<(Vec<Ran>, Summary)> {
     let mut recorder: Option<Recorder> = None;
     let mut all = Vec::new();
     for ((scene, plan), heading) in scenes.iter().zip(plans).zip(headings) {
-        let simulation = Simulation::new(scene);
+        let simulation = Simulation::new(scene).until_set(stop.asked());
         let subjects = simulation.subjects().to_vec();
         let mut sink = match recorder.take() {
             None => start(heading, &subjects)?,
@@ -301,6 +339,9 @@ pub(super) fn record(
             done,
         });
         recorder = Some(sink);
+        if stop.code().is_some() {
+            break;
+        }
     }
     // Whatever the run came to, the file is closed whole and what there is of it is told.
     let summary = recorder.map(Recorder::finish).transpose()?;

@@ -1,7 +1,8 @@
 //! `run FILE.rrd --verify`: whether a recording's scene, run again, gives the same bits.
 
 use super::run::{Arguments, headings, must_not_be_input, plans, record, scenes};
-use super::{Wrong, print};
+use super::stop::Stop;
+use super::{Told, Wrong, print};
 use crate::record::{
     Comparison, Difference, Heading, Made, Provenance, Recorder, VERSION, Verdict,
 };
@@ -36,13 +37,19 @@ pub fn run(arguments: &Arguments, made: &Made) -> anyhow::Result<()> {
     let comparison =
         comparison.map_err(|error| Wrong(format!("{file}: cannot be read: {error}")))?;
     let comparison = std::cell::Cell::new(Some(comparison));
+    let to = arguments.out.as_ref().map(|out| arguments.destination(out));
     let start = |heading: &Heading, subjects: &[Subject]| match comparison.take() {
-        Some(comparison) => {
-            Recorder::comparing(comparison, arguments.out.as_deref(), heading, subjects)
-        }
+        Some(comparison) => Recorder::comparing(comparison, to.as_ref(), heading, subjects),
         None => Recorder::nowhere(heading, subjects),
     };
-    let (_, summary) = record(&scenes, &plans, &headings, start)?;
+    let stop = Stop::listen()?;
+    let (_, summary) = record((&scenes, &plans), &headings, &stop, start)?;
+    if let Some(code) = stop.code() {
+        print::err(&format!(
+            "{file}: the run was stopped before it could be told whether it gives the same bits"
+        ));
+        return Err(Told(code).into());
+    }
     tell(arguments, made, &scenes, &summary.verdicts)
 }
 

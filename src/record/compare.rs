@@ -3,7 +3,8 @@
 //! Both come in the same order where they are the same, so hardly anything is kept. Rows are matched
 //! entity by entity all the same: a recording that another tool has put in order is as good.
 
-use super::read::{Made, Messages};
+use super::messages::Messages;
+use super::read::Made;
 use super::recorder::{HASHES, number_columns};
 use crate::trace::{STREAMS, Shape};
 use rerun::external::arrow::array::{Array as _, ArrayRef, Float32Array, Float64Array};

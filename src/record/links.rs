@@ -3,11 +3,11 @@
 //! What no rigid body has is no ellipsoid, and what is in other units would hide all others: a red dot in
 //! the row, and the reason in the text.
 
-use super::RecordError;
 use super::blueprint::{Blueprint, View};
 use super::look;
 use super::recorder::Summary;
 use super::rrd::RrdFile;
+use super::{Destination, RecordError};
 use crate::mass::links::{Description, Inertial, Link, Verdict};
 use nalgebra::Vector3;
 use rerun::EntityPath;
@@ -17,7 +17,6 @@ use rerun::archetypes::{
 use rerun::components::{FillMode, Radius};
 use rerun::external::re_sdk_types::blueprint::archetypes as ba;
 use rerun::external::re_sdk_types::blueprint::components::{self as bc, ContainerKind};
-use std::path::Path;
 
 const LEGEND: &str = "# Equivalent ellipsoids\n\nEach link stands by itself, in its own axes, as the uniform \
     ellipsoid that has its mass and its inertia: half axes `a_i² = 5/(2m) (I_j + I_k - I_i)`. Its size and place beside the \
@@ -25,9 +24,9 @@ const LEGEND: &str = "# Equivalent ellipsoids\n\nEach link stands by itself, in 
     body has, or hardly any of its size.";
 
 /// Writes a recording of what a robot's description says of its links.
-pub fn links(path: &Path, robot: &Description) -> Result<Summary, RecordError> {
+pub fn links(to: &Destination, robot: &Description) -> Result<Summary, RecordError> {
     let id = format!("{}-links", robot.language.name().to_lowercase());
-    let mut file = RrdFile::create(path, &id)?;
+    let mut file = RrdFile::create(to, &id)?;
     layout(&mut file)?;
     file.begin_recording()?;
     file.statics("/", &[&ViewCoordinates::RIGHT_HAND_Z_UP()])?;
@@ -51,7 +50,7 @@ pub fn links(path: &Path, robot: &Description) -> Result<Summary, RecordError> {
     }
     let (bytes, rows) = file.finish()?;
     Ok(Summary {
-        path: path.to_owned(),
+        path: to.path.clone(),
         bytes,
         rows,
         verdicts: Vec::new(),

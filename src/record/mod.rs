@@ -8,17 +8,21 @@
 mod blueprint;
 mod columns;
 mod compare;
+mod destination;
+mod frames;
 mod heading;
 mod layout;
 mod links;
 mod look;
 mod mesh;
+mod messages;
 mod page;
 mod picture;
 mod price;
 mod provenance;
 mod read;
 mod recorder;
+mod recover;
 mod rrd;
 mod scale;
 mod sources;
@@ -26,11 +30,13 @@ mod swarm;
 mod viewer;
 
 pub use compare::{Comparison, Difference, Verdict};
+pub use destination::{Destination, partial_name};
 pub use heading::Heading;
 pub use links::links;
 pub use provenance::{Provenance, VERSION};
 pub use read::{Made, ReadError, is_recording, read};
 pub use recorder::{Recorder, Summary};
+pub use recover::{RecoverError, Recovered, recover, recovered_name};
 pub use viewer::{Assets, native_version_line};
 
 /// The version of Rerun whose files this writes and whose viewer it carries.
@@ -45,15 +51,37 @@ pub enum RecordError {
     #[error("{path}: cannot be written: {why}; choose another file or folder for the recording")]
     Create { path: String, why: String },
     #[error(
-        "{path}: writing stopped: {why}; make room there, or record fewer streams or less often"
+        "{path}: writing stopped: {why}; make room there, or record fewer streams or less often{}", kept(.partial)
     )]
-    Write { path: String, why: String },
+    Write {
+        path: String,
+        why: String,
+        /// Where what was recorded until then is.
+        partial: Option<String>,
+    },
     #[error("{path} exists and is no recording; choose another name, so that it is not lost")]
     Occupied { path: String },
+    #[error("{path} exists; --force replaces it, or choose another name")]
+    Exists { path: String },
+    #[error("{path} is being written by another torquescope; wait for it, or choose another name")]
+    Busy { path: String },
+    #[error(
+        "{path} was left by a run that was killed: `torquescope recover {path}` makes a whole recording of it, --force writes over it"
+    )]
+    Left { path: String },
 }
 
 impl From<RecordError> for crate::trace::SinkError {
     fn from(error: RecordError) -> Self {
         Self(error.to_string())
+    }
+}
+
+fn kept(partial: &Option<String>) -> String {
+    match partial {
+        Some(path) => format!(
+            "; what was recorded until then is in {path}, and `torquescope recover {path}` makes it whole"
+        ),
+        None => String::new(),
     }
 }

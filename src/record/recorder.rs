@@ -1,6 +1,5 @@
 //! A trace on its way into a file: buffered by body, written by whole chunks.
 
-use super::RecordError;
 use super::columns::{Ends, Times, counts, numbers, texts, vectors};
 use super::compare::{Comparison, Difference, Verdict};
 use super::heading::Heading;
@@ -13,6 +12,7 @@ use super::price;
 use super::rrd::{RrdFile, Store};
 use super::sources::{self, Sources};
 use super::swarm::SwarmRecorder;
+use super::{Destination, RecordError};
 use crate::trace::{
     Instant, Motion, Note, NoteKind, Quantity, STREAMS, Sample, Sink, SinkError, Subject, Track,
 };
@@ -89,11 +89,12 @@ struct BodyRecorder {
 impl Recorder {
     /// Creates the file and writes what does not change: blueprint first, then static things.
     pub fn create(
-        path: &Path,
+        to: &Destination,
         heading: &Heading,
         subjects: &[Subject],
     ) -> Result<Self, RecordError> {
-        Self::into_file(RrdFile::create(path, &heading.id)?, path, heading, subjects)
+        let file = RrdFile::create(to, &heading.id)?;
+        Self::into_file(file, &to.path, heading, subjects)
     }
 
     /// Records to nowhere, to learn from its summary how large a recording is.
@@ -105,16 +106,17 @@ impl Recorder {
     /// Holds what is recorded against earlier recordings of it; the file is for who wants to look.
     pub fn comparing(
         comparison: Comparison,
-        path: Option<&Path>,
+        to: Option<&Destination>,
         heading: &Heading,
         subjects: &[Subject],
     ) -> Result<Self, RecordError> {
-        let mut file = match path {
-            Some(path) => RrdFile::create(path, &heading.id)?,
+        let mut file = match to {
+            Some(to) => RrdFile::create(to, &heading.id)?,
             None => RrdFile::nowhere(&heading.id)?,
         };
         file.compare_with(comparison);
-        Self::into_file(file, path.unwrap_or(Path::new("")), heading, subjects)
+        let path = to.map_or(Path::new(""), |to| &to.path);
+        Self::into_file(file, path, heading, subjects)
     }
 
     fn into_file(

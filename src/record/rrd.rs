@@ -1,37 +1,47 @@
 //! An `.rrd` file written by whole chunks, every write error returned at once.
 //!
 //! The SDK's own sink hides errors until a flush and numbers rows by the clock. Here rows and
-//! chunks are numbered in order, so that two runs of a scene give the same data.
+//! chunks are numbered in order, so that two runs of a scene give the same file.
 
+use super::RecordError;
 use super::columns::{Column, Times};
 use super::compare::{Comparison, Verdict};
-use super::{MAGIC, RecordError};
-use rerun::external::re_log_encoding::{CrateVersion, Encoder, EncodingOptions};
+use super::destination::{Destination, Output};
+use super::frames::{Frames, encode};
 use rerun::external::re_log_types::{
     BlueprintActivationCommand, LogMsg, SetStoreInfo, StoreId, StoreInfo, StoreKind, StoreSource,
 };
 use rerun::log::{Chunk, ChunkId, RowId};
 use rerun::{AsComponents, EntityPath, TimePoint};
-use std::cell::Cell;
-use std::fs::File;
-use std::io::{BufWriter, Read as _, Write};
-use std::path::{Path, PathBuf};
-use std::rc::Rc;
+use std::time::{Duration, Instant};
 
 /// What recordings of this program call themselves; blueprints apply to recordings of one name.
 pub const APPLICATION: &str = "torquescope";
 
 /// A recording being written.
 pub struct RrdFile {
-    path: PathBuf,
-    encoder: Encoder<Counted>,
-    bytes: Rc<Cell<u64>>,
+    /// What errors call it.
+    name: String,
+    frames: Frames,
     recording: StoreId,
     blueprint: StoreId,
     next: u64,
     rows: u64,
     /// What the recording is held against.
     comparison: Option<Comparison>,
+    /// Messages that are not settled, while they are gathered.
+    tail: Option<Tail>,
+    /// When everything was last in the file, and how long that may be ago.
+    kept_up: Instant,
+    keeps_up: Duration,
+}
+
+/// Messages that stand behind those that are settled until others take their place.
+#[derive(Default)]
+struct Tail {
+    bytes: Vec<u8>,
+    /// Its numbers are its own: what is settled is numbered as if it had never been.
+    next: u64,
 }
 
 /// Which of a file's two stores a chunk belongs to.
@@ -41,52 +51,42 @@ pub enum Store {
     Recording,
 }
 
+/// Upper halves of ids, where the SDK puts the clock: constant here.
+const SETTLED: u128 = 1 << 64;
+const UNSETTLED: u128 = 3 << 64;
+
 impl RrdFile {
     /// Creates the file, so that what cannot be written is known before anything is computed.
-    /// An earlier recording of that name is replaced; anything else there is left alone.
-    pub fn create(path: &Path, recording_id: &str) -> Result<Self, RecordError> {
-        must_not_be_lost(path)?;
-        let fail = |why: String| RecordError::Create {
-            path: path.display().to_string(),
-            why,
-        };
-        let file = File::create(path).map_err(|error| fail(error.to_string()))?;
-        let writer = BufWriter::with_capacity(1 << 20, file);
-        Self::into_writer(path, Box::new(writer), recording_id)
+    pub fn create(to: &Destination, recording_id: &str) -> Result<Self, RecordError> {
+        let name = to.path.display().to_string();
+        let mut file = Self::into_output(name, Output::open(to)?, recording_id)?;
+        file.keeps_up = to.keeps_up;
+        Ok(file)
     }
 
     /// Writes to nowhere, to learn how many bytes a recording takes.
     pub fn nowhere(recording_id: &str) -> Result<Self, RecordError> {
-        let path = Path::new("a recording to nowhere");
-        Self::into_writer(path, Box::new(std::io::sink()), recording_id)
+        let name = "a recording to nowhere".to_owned();
+        Self::into_output(name, Output::nowhere(), recording_id)
     }
 
-    fn into_writer(
-        path: &Path,
-        inner: Box<dyn Write>,
-        recording_id: &str,
-    ) -> Result<Self, RecordError> {
-        let bytes = Rc::new(Cell::new(0));
-        let writer = Counted {
-            inner,
-            bytes: Rc::clone(&bytes),
-        };
-        let options = EncodingOptions::PROTOBUF_COMPRESSED;
-        let encoder = Encoder::new_eager(CrateVersion::LOCAL, options, writer);
-        let encoder = encoder.map_err(|error| RecordError::Create {
-            path: path.display().to_string(),
-            why: error.to_string(),
+    fn into_output(name: String, output: Output, recording_id: &str) -> Result<Self, RecordError> {
+        let frames = Frames::new(output).map_err(|why| RecordError::Create {
+            path: name.clone(),
+            why,
         })?;
         let blueprint_id = format!("{recording_id}-blueprint");
         let mut file = Self {
-            path: path.to_owned(),
-            encoder,
-            bytes,
+            name,
+            frames,
             recording: StoreId::new(StoreKind::Recording, APPLICATION, recording_id),
             blueprint: StoreId::new(StoreKind::Blueprint, APPLICATION, blueprint_id),
             next: 1,
             rows: 0,
             comparison: None,
+            tail: None,
+            kept_up: Instant::now(),
+            keeps_up: Duration::MAX,
         };
         file.open(Store::Blueprint)?;
         Ok(file)
@@ -94,7 +94,7 @@ impl RrdFile {
 
     /// Ends the blueprint, which makes it the one shown, and begins the recording proper.
     pub fn begin_recording(&mut self) -> Result<(), RecordError> {
-        self.append(&LogMsg::BlueprintActivationCommand(
+        self.message(&LogMsg::BlueprintActivationCommand(
             BlueprintActivationCommand {
                 blueprint_id: self.blueprint.clone(),
                 make_active: true,
@@ -150,7 +150,8 @@ impl RrdFile {
         at: TimePoint,
         parts: &[&dyn AsComponents],
     ) -> Result<(), RecordError> {
-        self.rows += u64::from(store == Store::Recording && !at.is_static());
+        let counts = store == Store::Recording && !at.is_static() && self.tail.is_none();
+        self.rows += u64::from(counts);
         let (chunk, row) = (self.chunk_id(), self.row_id());
         let batches = parts.iter().flat_map(|part| part.as_serialized_batches());
         let chunk = Chunk::builder_with_id(chunk, path)
@@ -183,24 +184,57 @@ impl RrdFile {
                 .collect(),
             columns.into_iter().collect(),
         );
-        self.rows += times.len() as u64;
+        if self.tail.is_none() {
+            self.rows += times.len() as u64;
+        }
         self.chunk(Store::Recording, chunk)
     }
 
-    /// Writes the footer and everything buffered; returns the bytes of the file and its rows in time.
+    /// Writes the footer and everything buffered, and gives the file its name; returns the bytes of the
+    /// file and its rows in time.
     pub fn finish(mut self) -> Result<(u64, u64), RecordError> {
-        let done = self
-            .encoder
-            .finish()
-            .and_then(|()| self.encoder.flush_blocking());
-        done.map_err(|error| self.stopped(&error))?;
-        Ok((self.bytes.get(), self.rows))
+        let done = self.frames.finish(&self.recording.clone());
+        let bytes = done.map_err(|error| self.stopped(&error))?;
+        Ok((bytes, self.rows))
     }
 
-    fn stopped(&self, error: &dyn std::fmt::Display) -> RecordError {
+    /// Whether rows have waited in memory longer than they may.
+    pub fn is_behind(&self) -> bool {
+        self.kept_up.elapsed() >= self.keeps_up
+    }
+
+    /// From here on what is written is not settled. Its rows stay where they were taken from, see
+    /// [`take`](Self::take), and will be written again.
+    pub fn begin_tail(&mut self) {
+        self.tail = Some(Tail::default());
+    }
+
+    /// Gives all that was settled, and what was not, to the system.
+    pub fn end_tail(&mut self) -> Result<(), RecordError> {
+        let tail = self.tail.take().unwrap_or_default();
+        let done = self.frames.output().tail(&tail.bytes);
+        self.kept_up = Instant::now();
+        done.map_err(|error| self.stopped(&error))
+    }
+
+    /// Rows for a chunk, which stay where they are if the chunk is not settled.
+    pub fn take<T: Clone + Default>(&self, rows: &mut T) -> T {
+        match self.tail {
+            Some(_) => rows.clone(),
+            None => std::mem::take(rows),
+        }
+    }
+
+    fn partial(&mut self) -> Option<String> {
+        let partial = self.frames.output().partial();
+        partial.map(|path| path.display().to_string())
+    }
+
+    fn stopped(&mut self, error: &dyn std::fmt::Display) -> RecordError {
         RecordError::Write {
-            path: self.path.display().to_string(),
+            path: self.name.clone(),
             why: error.to_string(),
+            partial: self.partial(),
         }
     }
 
@@ -208,7 +242,7 @@ impl RrdFile {
         let source = StoreSource::Other(format!("torquescope {}", env!("CARGO_PKG_VERSION")));
         let info = StoreInfo::new(self.id(store), source);
         let row_id = self.row_id();
-        self.append(&LogMsg::SetStoreInfo(SetStoreInfo {
+        self.message(&LogMsg::SetStoreInfo(SetStoreInfo {
             row_id: row_id.as_tuid(),
             info,
         }))
@@ -219,20 +253,24 @@ impl RrdFile {
         store: Store,
         chunk: Result<Chunk, E>,
     ) -> Result<(), RecordError> {
-        let fail = |error: &dyn std::fmt::Display| self.stopped(error);
-        let chunk = chunk.map_err(|error| fail(&error))?;
-        let message = chunk.to_arrow_msg().map_err(|error| fail(&error))?;
+        let chunk = chunk.map_err(|error| self.stopped(&error))?;
+        let id = self.id(store);
+        if let Some(tail) = &mut self.tail {
+            let message = chunk.to_arrow_msg().map_err(|error| error.to_string());
+            let done =
+                message.and_then(|message| encode(&LogMsg::ArrowMsg(id, message), &mut tail.bytes));
+            return done.map(|_| ()).map_err(|error| self.stopped(&error));
+        }
         if let (Some(comparison), Store::Recording) = (&mut self.comparison, store) {
             comparison.take(&chunk);
         }
-        self.append(&LogMsg::ArrowMsg(self.id(store), message))
+        let done = self.frames.chunk(&id, &chunk);
+        done.map_err(|error| self.stopped(&error))
     }
 
-    fn append(&mut self, message: &LogMsg) -> Result<(), RecordError> {
-        match self.encoder.append(message) {
-            Ok(_) => Ok(()),
-            Err(error) => Err(self.stopped(&error)),
-        }
+    fn message(&mut self, message: &LogMsg) -> Result<(), RecordError> {
+        let done = self.frames.message(message);
+        done.map_err(|error| self.stopped(&error))
     }
 
     fn id(&self, store: Store) -> StoreId {
@@ -250,40 +288,22 @@ impl RrdFile {
         ChunkId::from_u128(self.number())
     }
 
-    /// The next number. The upper half is where the SDK puts the clock: constant here.
     fn number(&mut self) -> u128 {
-        self.next += 1;
-        (1 << 64) | u128::from(self.next)
+        let (half, next) = match &mut self.tail {
+            Some(tail) => (UNSETTLED, &mut tail.next),
+            None => (SETTLED, &mut self.next),
+        };
+        *next += 1;
+        half | u128::from(*next)
     }
 }
 
-/// Counts the bytes that go through.
-struct Counted {
-    inner: Box<dyn Write>,
-    bytes: Rc<Cell<u64>>,
-}
-
-impl Write for Counted {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        let written = self.inner.write(bytes)?;
-        self.bytes.set(self.bytes.get() + written as u64);
-        Ok(written)
+impl Drop for RrdFile {
+    /// What is there of a recording is kept when it ends before its time; an empty one is not.
+    fn drop(&mut self) {
+        match self.rows {
+            0 => self.frames.output().discard(),
+            _ => self.frames.output().keep(),
+        }
     }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.inner.flush()
-    }
-}
-
-/// A file that is there and is no recording was put there for something else.
-fn must_not_be_lost(path: &Path) -> Result<(), RecordError> {
-    let is_file = std::fs::metadata(path).is_ok_and(|data| data.is_file() && data.len() > 0);
-    let mut magic = [0; MAGIC.len()];
-    let mut read = || File::open(path).and_then(|mut file| file.read_exact(&mut magic));
-    if is_file && (read().is_err() || &magic != MAGIC) {
-        return Err(RecordError::Occupied {
-            path: path.display().to_string(),
-        });
-    }
-    Ok(())
 }

@@ -27,6 +27,7 @@ use schedule::{Schedule, Stretch};
 use script::{Acting, Applied, Done, Happening, Lasting};
 use std::cell::RefCell;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 use truth::Truth;
 use watch::{Made, Watch};
 
@@ -53,6 +54,8 @@ pub struct Simulation<'s> {
     timed: bool,
     /// Mean wall time of the last stretch's steps of a group, s.
     step_time: Option<f64>,
+    /// Set by who wants the run to end.
+    stop: Option<&'s AtomicBool>,
 }
 
 /// Steps of a block from which on a thread is worth its start (some 40 µs): about ten times that.
@@ -117,6 +120,8 @@ pub enum SimError {
     },
     #[error("the scene states an accuracy and no method: it has to be planned first")]
     Undecided,
+    #[error("stopped at t = {time} s, step {step}")]
+    Stopped { time: f64, step: u64 },
     #[error(transparent)]
     Sink(#[from] SinkError),
 }
@@ -133,6 +138,14 @@ impl<'s> Simulation<'s> {
             Stepping::Accuracy(_) => 1,
         };
         Self::in_groups(scene, width)
+    }
+
+    /// The same, ended at the next stretch of steps once `stop` is set.
+    pub fn until_set(self, stop: &'s AtomicBool) -> Self {
+        Self {
+            stop: Some(stop),
+            ..self
+        }
     }
 
     /// Each body goes alone, by the way that is chosen for it.
@@ -160,6 +173,7 @@ impl<'s> Simulation<'s> {
             compared: is_compared(scene),
             timed: scene.record.streams.contains("step_time"),
             step_time: None,
+            stop: None,
         };
         if scene.record.streams.contains("sources") {
             let outside = simulation.outside_swarms;
@@ -298,6 +312,10 @@ impl<'s> Simulation<'s> {
         self.deliver_fingerprint(start, sink)?;
         loop {
             let first = schedule.now();
+            if self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+                let Instant { time, step } = first;
+                return Err(SimError::Stopped { time, step });
+            }
             let Some(stretch) = schedule.next_stretch() else {
                 self.write_notes(&[], first, f64::INFINITY, sink)?;
                 return Ok(());

@@ -1,0 +1,195 @@
+//! The frames of an `.rrd` file: a head, messages one after another, a footer that says where each chunk is.
+//!
+//! Written here and not by the SDK's encoder, for three reasons: the footer's manifests are in one order, so that two
+//! runs give the same file; every error is returned at once; and between the messages stand checksums:
+//!
+//! ```text
+//! head | message … message | checksums of each so far | message … message | checksums of each since | … | footer
+//! ```
+//!
+//! They are a message like any other, a chunk of no time at an entity that viewers do not show, so that every reader of the
+//! format reads the file. The footer has a checksum of its own.
+
+use super::MAGIC;
+use super::columns::{Ends, counts};
+use super::destination::Output;
+use re_protos::log_msg::v1alpha1::RrdFooter;
+use rerun::ComponentDescriptor;
+use rerun::external::arrow::datatypes::Schema;
+use rerun::external::re_chunk_store::external::re_chunk::Span;
+use rerun::external::re_log_encoding::{
+    Compression, CrateVersion, Encodable as _, EncodingOptions, MessageHeader, MessageKind,
+    RrdManifestBuilder, StreamFooter, StreamHeader, ToTransport as _,
+};
+use rerun::external::re_log_types::{ArrowMsg, LogMsg, StoreId};
+use rerun::log::{Chunk, ChunkId, RowId};
+
+/// Writes an `.rrd` file.
+pub struct Frames {
+    output: Output,
+    /// Bytes so far.
+    bytes: u64,
+    /// Where the last checksums began, and those of the messages since.
+    checked: u64,
+    checksums: Vec<u64>,
+    /// How often there were some.
+    checks: u64,
+    /// What the footer will say, by store.
+    manifests: Vec<(StoreId, RrdManifestBuilder)>,
+    scratch: Vec<u8>,
+}
+
+/// Bytes between checksums at least.
+const CHECKED_EVERY: u64 = 1 << 20;
+
+/// Where checksums are: no viewer shows what begins like this.
+const CHECKSUMS: &str = "/__torquescope/checksum";
+/// The upper half of their ids, where the SDK puts the clock.
+const CHECKSUMS_OF: u128 = 2 << 64;
+
+pub fn is_checksums(chunk: &ArrowMsg) -> bool {
+    chunk.chunk_id.as_u128() >> 64 == CHECKSUMS_OF >> 64
+}
+
+impl Frames {
+    pub fn new(output: Output) -> Result<Self, String> {
+        let mut frames = Self {
+            output,
+            bytes: 0,
+            checked: 0,
+            checksums: Vec::new(),
+            checks: 0,
+            manifests: Vec::new(),
+            scratch: Vec::new(),
+        };
+        let head = StreamHeader {
+            fourcc: *MAGIC,
+            version: CrateVersion::LOCAL.to_bytes(),
+            options: EncodingOptions::PROTOBUF_COMPRESSED,
+        };
+        head.to_rrd_bytes(&mut frames.scratch).map_err(said)?;
+        frames.put()?;
+        Ok(frames)
+    }
+
+    pub fn output(&mut self) -> &mut Output {
+        &mut self.output
+    }
+
+    pub fn message(&mut self, message: &LogMsg) -> Result<(), String> {
+        encode(message, &mut self.scratch)?;
+        self.put()?;
+        Ok(())
+    }
+
+    /// Writes a chunk of a store, and checksums where they are due.
+    pub fn chunk(&mut self, store: &StoreId, chunk: &Chunk) -> Result<(), String> {
+        self.put_chunk(store, chunk)?;
+        match self.bytes - self.checked >= CHECKED_EVERY {
+            true => self.put_checksums(store),
+            false => Ok(()),
+        }
+    }
+
+    fn put_chunk(&mut self, store: &StoreId, chunk: &Chunk) -> Result<(), String> {
+        let message = chunk.to_arrow_msg().map_err(said)?;
+        let message = LogMsg::ArrowMsg(store.clone(), message);
+        let unpacked = encode(&message, &mut self.scratch)?;
+        let start = self.bytes + MessageHeader::ENCODED_SIZE_BYTES as u64;
+        let length = self.put()? - MessageHeader::ENCODED_SIZE_BYTES as u64;
+        if !store.is_recording() {
+            // Looked up by nobody, and by its many small chunks it would be most of a footer.
+            return Ok(());
+        }
+        let batch = chunk.to_chunk_batch().map_err(said)?;
+        let known = self.manifests.iter().position(|(id, _)| id == store);
+        let index = known.unwrap_or_else(|| {
+            let manifest = RrdManifestBuilder::default();
+            self.manifests.push((store.clone(), manifest));
+            self.manifests.len() - 1
+        });
+        let span = Span::from_start_len(start, length);
+        let manifest = &mut self.manifests[index].1;
+        manifest.append(&batch, span, unpacked).map_err(said)
+    }
+
+    /// Writes the checksums of what has none: from where, to where, and one of each message.
+    fn put_checksums(&mut self, store: &StoreId) -> Result<(), String> {
+        let mut numbers = vec![self.checked, self.bytes];
+        numbers.append(&mut self.checksums);
+        self.checked = self.bytes;
+        let ends = Ends::uniform(1, numbers.len());
+        let column = counts(ComponentDescriptor::partial("crc32"), numbers, ends);
+        self.checks += 1;
+        let id = CHECKSUMS_OF | u128::from(self.checks);
+        let chunk = Chunk::from_native_row_ids(
+            ChunkId::from_u128(id),
+            CHECKSUMS.into(),
+            Some(true),
+            &[RowId::from_u128(id)],
+            Default::default(),
+            std::iter::once(column).collect(),
+        );
+        self.put_chunk(store, &chunk.map_err(said)?)
+    }
+
+    /// Writes the last checksums, in this store, and the footer, and gives the file its name; its bytes.
+    pub fn finish(&mut self, store: &StoreId) -> Result<u64, String> {
+        self.put_checksums(store)?;
+        let manifests = std::mem::take(&mut self.manifests).into_iter();
+        let manifests = manifests.map(|(store, manifest)| {
+            let mut manifest = manifest.build(store).map_err(said)?;
+            in_order(&mut manifest.sorbet_schema);
+            manifest.to_transport(()).map_err(said)
+        });
+        let footer = RrdFooter {
+            manifests: manifests.collect::<Result<_, String>>()?,
+        };
+        let mut encoded = Vec::new();
+        footer.to_rrd_bytes(&mut encoded).map_err(said)?;
+        let end = MessageHeader {
+            kind: MessageKind::End,
+            len: encoded.len() as u64,
+        };
+        self.scratch.clear();
+        end.to_rrd_bytes(&mut self.scratch).map_err(said)?;
+        let start = self.bytes + self.scratch.len() as u64;
+        self.scratch.extend_from_slice(&encoded);
+        let last = StreamFooter::from_rrd_footer_bytes(start, &encoded);
+        last.to_rrd_bytes(&mut self.scratch).map_err(said)?;
+        self.put()?;
+        self.output.finish().map_err(said)?;
+        Ok(self.bytes)
+    }
+
+    /// Writes what is in `scratch`; how many bytes.
+    fn put(&mut self) -> Result<u64, String> {
+        self.output.write(&self.scratch).map_err(said)?;
+        let length = self.scratch.len() as u64;
+        self.checksums.push(crc32fast::hash(&self.scratch).into());
+        self.bytes += length;
+        self.scratch.clear();
+        Ok(length)
+    }
+}
+
+/// Sorts the columns that a manifest lists, which come in the order of a hash: what is no component first.
+fn in_order(schema: &mut Schema) {
+    let mut fields = schema.fields().to_vec();
+    fields.sort_by_cached_key(|field| {
+        let kind = field.metadata().get("rerun:kind").cloned();
+        (kind, field.name().clone())
+    });
+    schema.fields = fields.into();
+}
+
+/// Appends a message to some bytes; how many it unpacks to.
+pub fn encode(message: &LogMsg, into: &mut Vec<u8>) -> Result<u64, String> {
+    let packed = message.to_transport(Compression::LZ4).map_err(said)?;
+    packed.to_rrd_bytes(into).map_err(said)?;
+    Ok(packed.byte_size_uncompressed())
+}
+
+fn said(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}

@@ -1,0 +1,377 @@
+//! The messages of an `.rrd` file, one after another, until it ends or cannot be read.
+//!
+//! Whatever is in the file, reading it neither panics nor asks for memory that there is not; what was cut off or changed
+//! since it was written is told. Files of others have no checksums: of them only the cut is seen.
+
+use super::RERUN_VERSION;
+use super::frames::is_checksums;
+use re_protos::common::v1alpha1::Compression;
+use re_protos::log_msg::v1alpha1::ArrowMsg;
+use re_protos::log_msg::v1alpha1::log_msg::Msg;
+use rerun::external::arrow::array::{Array as _, UInt64Array};
+use rerun::external::arrow::ipc::root_as_message;
+use rerun::external::re_log_encoding::{
+    CachingApplicationIdInjector, Decodable as _, Encodable as _, MessageHeader, MessageKind,
+    StreamFooter, StreamFooterEntry, StreamHeader, ToApplication as _,
+};
+use rerun::external::re_log_types::{LogMsg, StoreId};
+use rerun::log::Chunk;
+use std::cell::Cell;
+use std::fs::File;
+use std::io::{BufReader, Read as _};
+use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::Once;
+
+/// The messages of a file.
+pub struct Messages {
+    file: BufReader<File>,
+    /// Bytes of the file, and those that are read.
+    bytes: u64,
+    at: u64,
+    /// Where the last whole message ends.
+    read_until: u64,
+    /// What was read since the last checksums began, and its checksums.
+    unchecked: Vec<(Range<u64>, u32)>,
+    names: CachingApplicationIdInjector,
+    /// What stopped it.
+    stopped: Option<String>,
+    /// Whether the mark of the end has come.
+    ended: bool,
+    /// Messages that are not as they were written, and the footer where that is not.
+    damaged: Vec<Range<u64>>,
+    bad_end: Option<Range<u64>>,
+    /// Whether what cannot be unpacked is passed over.
+    goes_on: bool,
+    /// The whole message last read.
+    frame: Vec<u8>,
+}
+
+/// Bytes of one message at most, unpacked: chunks are written by a few hundred rows, and a scene's
+/// text is no longer than 64 MB.
+const LARGEST_MESSAGE: u64 = 1 << 30;
+/// LZ4 packs no tighter.
+const TIGHTEST: u64 = 255;
+
+impl Messages {
+    pub fn open(path: &Path) -> std::io::Result<Self> {
+        let file = File::open(path)?;
+        let bytes = file.metadata()?.len();
+        let mut messages = Self {
+            file: BufReader::with_capacity(1 << 20, file),
+            bytes,
+            at: 0,
+            read_until: 0,
+            unchecked: Vec::new(),
+            names: CachingApplicationIdInjector::default(),
+            stopped: None,
+            ended: false,
+            damaged: Vec::new(),
+            bad_end: None,
+            goes_on: false,
+            frame: Vec::new(),
+        };
+        let head = StreamHeader::ENCODED_SIZE_BYTES as u64;
+        if bytes < head {
+            messages.stopped = Some("it is cut within its head".to_owned());
+            return Ok(messages);
+        }
+        messages.read(head)?;
+        messages.remember();
+        let known = StreamHeader::from_rrd_bytes(&messages.frame);
+        let known = known.and_then(StreamHeader::to_version_and_options);
+        messages.stopped = known.err().map(|error| plain(&error.to_string()));
+        Ok(messages)
+    }
+
+    /// The next message, if there is one that can be read.
+    pub fn next(&mut self) -> Option<LogMsg> {
+        loop {
+            self.next_frame()?;
+            let unpacked = match quietly(|| self.unpacked()) {
+                Ok(unpacked) => unpacked,
+                Err(why) => Err(why),
+            };
+            if let Ok(LogMsg::ArrowMsg(_, chunk)) = &unpacked
+                && is_checksums(chunk)
+            {
+                let chunk = quietly(|| Chunk::from_arrow_msg(chunk));
+                let written = chunk.ok().and_then(Result::ok).as_ref().and_then(written);
+                self.check(written);
+            }
+            self.remember();
+            self.read_until = self.at;
+            match unpacked {
+                Ok(message) => return Some(message),
+                Err(_) if self.goes_on => self.damaged.push(self.place()),
+                Err(why) => return self.stop(&why),
+            }
+        }
+    }
+
+    /// The same, and what cannot be unpacked is damaged and passed over.
+    pub fn going_on(self) -> Self {
+        Self {
+            goes_on: true,
+            ..self
+        }
+    }
+
+    /// The next chunk of a recording that is read, with its store. Checksums are not shown.
+    pub fn next_chunk(&mut self) -> Option<(StoreId, Chunk)> {
+        loop {
+            let LogMsg::ArrowMsg(store, message) = self.next()? else {
+                continue;
+            };
+            if !store.is_recording() || is_checksums(&message) {
+                continue;
+            }
+            return match quietly(|| Chunk::from_arrow_msg(&message)) {
+                Ok(Ok(chunk)) => Some((store, chunk)),
+                Ok(Err(error)) => self.stop(&error.to_string()),
+                Err(why) => self.stop(&why),
+            };
+        }
+    }
+
+    /// Where the message last read is in the file.
+    pub fn place(&self) -> Range<u64> {
+        self.at - self.frame.len() as u64..self.at
+    }
+
+    /// Messages that are not as they were written, as far as there are checksums or they cannot be read.
+    pub fn damaged(&self) -> &[Range<u64>] {
+        &self.damaged
+    }
+
+    /// Bytes at the end that are no message, once it has been read to there.
+    pub fn unread(&self) -> u64 {
+        self.bytes - self.read_until
+    }
+
+    /// What is wrong with the file, once it has been read to its end.
+    pub fn flaw(&self) -> Option<String> {
+        if let Some(why) = &self.stopped {
+            return Some(why.clone());
+        }
+        if !self.ended {
+            return Some(format!(
+                "it lacks the footer that rerun {RERUN_VERSION} ends a file with"
+            ));
+        }
+        let mut all = self.damaged.iter().chain(&self.bad_end);
+        let first = all.next()?;
+        let others = match all.count() {
+            0 => String::new(),
+            1 => ", and in another place".to_owned(),
+            n => format!(", and in {n} other places"),
+        };
+        Some(format!(
+            "bytes {} to {} of it are not those that were written{others}",
+            first.start, first.end
+        ))
+    }
+
+    /// Reads the next message's bytes.
+    fn next_frame(&mut self) -> Option<()> {
+        const HEADER: u64 = MessageHeader::ENCODED_SIZE_BYTES as u64;
+        if self.stopped.is_some() || self.ended || self.bytes - self.at < HEADER {
+            return None;
+        }
+        self.frame.clear();
+        if let Err(error) = self.read(HEADER) {
+            return self.stop(&error.to_string());
+        }
+        let header = match MessageHeader::from_rrd_bytes(&self.frame) {
+            Ok(header) => header,
+            Err(error) => return self.stop(&error.to_string()),
+        };
+        if header.len > self.bytes - self.at {
+            // What was being written when the program was killed.
+            self.at = self.bytes;
+            self.frame.clear();
+            return None;
+        }
+        if let Err(error) = self.read(header.len) {
+            return self.stop(&error.to_string());
+        }
+        if matches!(header.kind, MessageKind::End) {
+            self.end();
+            return None;
+        }
+        Some(())
+    }
+
+    /// Appends bytes of the file to the frame.
+    fn read(&mut self, length: u64) -> std::io::Result<()> {
+        let read = (&mut self.file).take(length).read_to_end(&mut self.frame)?;
+        self.at += read as u64;
+        match read as u64 == length {
+            true => Ok(()),
+            // Somebody has shortened it since.
+            false => Err(std::io::ErrorKind::UnexpectedEof.into()),
+        }
+    }
+
+    /// The footer is there: whether it is the one that was written, by the checksum behind it.
+    fn end(&mut self) {
+        let place = self.place();
+        let mut last = Vec::new();
+        let room = StreamFooter::ENCODED_SIZE_BYTES as u64;
+        let read = (&mut self.file).take(room).read_to_end(&mut last);
+        let known = read
+            .ok()
+            .and_then(|_| StreamFooter::from_rrd_bytes(&last).ok());
+        // Rerun before 0.28 wrote an end without one.
+        let bare = last.is_empty() && self.frame.len() == MessageHeader::ENCODED_SIZE_BYTES;
+        self.ended = known.is_some() || bare;
+        if self.ended {
+            self.read_until = self.bytes;
+        }
+        if known.is_some_and(|known| !self.is_as_written(&place, &known)) {
+            self.bad_end = Some(place);
+        }
+    }
+
+    /// Whether what is read is the footer that the last bytes tell of.
+    fn is_as_written(&self, place: &Range<u64>, told: &StreamFooter) -> bool {
+        let (head, footer) = self.frame.split_at(MessageHeader::ENCODED_SIZE_BYTES);
+        let start = place.start + head.len() as u64;
+        let header = MessageHeader {
+            kind: MessageKind::End,
+            len: place.end - start,
+        };
+        let mut written = Vec::new();
+        let checksum = StreamFooter::compute_crc(footer);
+        let mut entries = told.entries.iter();
+        let agrees = |entry: &StreamFooterEntry| {
+            let span = entry.rrd_footer_byte_span_from_start_excluding_header;
+            (entry.crc_excluding_header, span.start, span.len) == (checksum, start, header.len)
+        };
+        header.to_rrd_bytes(&mut written).is_ok()
+            && head == written
+            && !told.entries.is_empty()
+            && entries.all(agrees)
+    }
+
+    /// The frame as what it says.
+    fn unpacked(&mut self) -> Result<LogMsg, String> {
+        let packed = Option::<Msg>::from_rrd_bytes(&self.frame);
+        let packed = packed.map_err(|error| error.to_string())?;
+        let packed = packed.ok_or_else(|| "a message in it is none".to_owned())?;
+        // A length that says more than there can be asks for memory that there is not.
+        let most = LARGEST_MESSAGE.min(TIGHTEST * self.bytes + 64);
+        if packed.byte_size_uncompressed() > most {
+            return Err("a message in it is longer than it can be".to_owned());
+        }
+        if let Msg::ArrowMsg(message) = &packed {
+            must_be_whole(message)?;
+        }
+        let message = packed.to_application((&mut self.names, None));
+        message.map_err(|error| error.to_string())
+    }
+
+    /// Checksums are of what comes before them; the next begin with theirs.
+    fn remember(&mut self) {
+        let checksum = crc32fast::hash(&self.frame);
+        self.unchecked.push((self.place(), checksum));
+    }
+
+    /// Holds what was read against the checksums that were written of it.
+    fn check(&mut self, written: Option<Vec<u64>>) {
+        let read = std::mem::take(&mut self.unchecked);
+        let from = read.first().map_or(0, |(place, _)| place.start);
+        let to = read.last().map_or(0, |(place, _)| place.end);
+        match written.as_deref() {
+            Some([start, end, sums @ ..])
+                if (*start, *end, sums.len()) == (from, to, read.len()) =>
+            {
+                let differ = read.into_iter().zip(sums);
+                let differ = differ.filter(|((_, read), sum)| u64::from(*read) != **sum);
+                // Those that could not be read are known.
+                let known = std::mem::take(&mut self.damaged);
+                let new = differ.map(|((place, _), _)| place);
+                let new = new.filter(|place| !known.contains(place));
+                self.damaged = known.iter().cloned().chain(new).collect();
+            }
+            _ => self.damaged.push(from..to),
+        }
+    }
+
+    fn stop<T>(&mut self, why: &str) -> Option<T> {
+        self.stopped = Some(plain(why));
+        None
+    }
+}
+
+/// What a chunk of checksums says.
+fn written(chunk: &Chunk) -> Option<Vec<u64>> {
+    let list = chunk.components().list_arrays().next()?.values();
+    let numbers = list.as_any().downcast_ref::<UInt64Array>()?;
+    Some(numbers.values().to_vec())
+}
+
+fn plain(text: &str) -> String {
+    text.replace(char::is_control, " ")
+}
+
+/// Whether the parts of an Arrow message say no more of their lengths than there is: the decoder asks for
+/// as much memory as they say.
+fn must_be_whole(message: &ArrowMsg) -> Result<(), String> {
+    let size = usize::try_from(message.uncompressed_size).unwrap_or(usize::MAX);
+    let mut unpacked = Vec::new();
+    let mut rest: &[u8] = match message.compression() {
+        Compression::Lz4 => {
+            unpacked.resize(size, 0);
+            lz4_flex::block::decompress_into(&message.payload, &mut unpacked)
+                .map_err(|error| format!("a message in it cannot be unpacked: {error}"))?;
+            &unpacked
+        }
+        _ => &message.payload,
+    };
+    let cut = || "a message in it says that it is longer than it is".to_owned();
+    // Each part: -1, the length of its head, the head, the body (Arrow's IPC streaming format).
+    while let Some((mark, after)) = rest.split_first_chunk::<4>() {
+        let (length, after) = match *mark {
+            [0xff, 0xff, 0xff, 0xff] => after.split_first_chunk::<4>().ok_or_else(cut)?,
+            _ => (mark, after),
+        };
+        let length = usize::try_from(i32::from_le_bytes(*length)).map_err(|_| cut())?;
+        if length == 0 {
+            break;
+        }
+        let (head, after) = after.split_at_checked(length).ok_or_else(cut)?;
+        let head = root_as_message(head).map_err(|error| error.to_string())?;
+        let body = usize::try_from(head.bodyLength()).map_err(|_| cut())?;
+        rest = after.get(body..).ok_or_else(cut)?;
+    }
+    Ok(())
+}
+
+thread_local! {
+    static QUIET: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Runs what may panic: decoders do, on bytes that are no longer what was written. Says what it said,
+/// and prints nothing.
+pub fn quietly<T>(run: impl FnOnce() -> T) -> Result<T, String> {
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        let loud = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            if !QUIET.get() {
+                loud(panic);
+            }
+        }));
+    });
+    QUIET.set(true);
+    // What was half decoded is not looked at again: reading stops there.
+    let done = catch_unwind(AssertUnwindSafe(run));
+    QUIET.set(false);
+    done.map_err(|panic| {
+        let text = panic.downcast_ref::<String>().cloned();
+        let text = text.or_else(|| panic.downcast_ref::<&str>().map(ToString::to_string));
+        format!("it cannot be decoded: {}", text.unwrap_or_default())
+    })
+}

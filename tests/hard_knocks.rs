@@ -1,0 +1,365 @@
+//! What can happen to a recording: killed runs, signals, full disks, names that are taken, changed bytes.
+#![cfg(all(feature = "cli", unix))]
+
+use assert_cmd::cargo::cargo_bin;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use torquescope::math::draw;
+use torquescope::record::{self, ReadError};
+
+/// Short, with a push.
+const SHORT: &str = "duration = 0.5\n[effects]\ngyroscopic = true\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 2, 2.5]\nangular_velocity = [1, 0.1, 0]\n[[event]]\nat = 0.05\nfor = 0.2\nbody = \"a\"\nforce = [0, 0, 3.0]\npoint = { body = [0.5, 0.1, 0] }\n";
+
+/// Some 1e8 rows: it ends when it is made to.
+fn endless() -> String {
+    let more =
+        "duration = 1e5\n[record]\nstate = \"every\"\n[stepping]\nstep = 1e-3\nmethod = \"rk4\"";
+    SHORT.replace("duration = 0.5", more)
+}
+
+fn folder_with(scene: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), scene).unwrap();
+    folder
+}
+
+fn torquescope(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(cargo_bin("torquescope"));
+    command.current_dir(folder).args(arguments);
+    command
+}
+
+fn output(folder: &Path, arguments: &[&str]) -> Output {
+    torquescope(folder, arguments).output().unwrap()
+}
+
+fn said(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A run that has begun to write.
+fn begun(folder: &Path, arguments: &[&str]) -> Child {
+    let child = torquescope(folder, arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let partial = folder.join("s.partial.rrd");
+    // The scene is in it by then, and rows.
+    wait_for(|| std::fs::metadata(&partial).is_ok_and(|data| data.len() > 1_500_000));
+    child
+}
+
+fn wait_for(is: impl Fn() -> bool) {
+    let start = Instant::now();
+    while !is() {
+        assert!(
+            start.elapsed() < Duration::from_secs(60),
+            "it does not come"
+        );
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill")
+        .args([name, &child.id().to_string()])
+        .status();
+    assert!(sent.unwrap().success());
+}
+
+fn flaw(path: &Path) -> Option<String> {
+    match record::read(path) {
+        Ok(made) => made.cut,
+        Err(ReadError::Cut { why, .. }) => Some(why),
+        Err(other) => Some(other.to_string()),
+    }
+}
+
+#[test]
+fn two_runs_give_the_same_file() {
+    let folder = folder_with(SHORT);
+    for scene in ["s.toml", "@cone", "@t_handle"] {
+        let mut files = Vec::new();
+        for name in ["one.rrd", "two.rrd", "three.rrd"] {
+            let done = output(folder.path(), &["run", scene, "--out", name, "--force"]);
+            assert!(done.status.success(), "{}", said(&done.stderr));
+            files.push(std::fs::read(folder.path().join(name)).unwrap());
+        }
+        assert!(files[0] == files[1] && files[1] == files[2], "{scene}");
+    }
+}
+
+#[test]
+fn a_name_that_is_taken_is_asked_for() {
+    let folder = folder_with(SHORT);
+    let run = |more: &[&str]| output(folder.path(), &[&["run", "s.toml"], more].concat());
+    assert!(run(&[]).status.success());
+    let again = run(&[]);
+    assert_eq!(again.status.code(), Some(2));
+    assert_eq!(
+        said(&again.stderr),
+        "s.rrd exists; --force replaces it, or choose another name\n"
+    );
+    assert!(again.stdout.is_empty());
+    assert!(run(&["--force"]).status.success());
+    let files = std::fs::read_dir(folder.path()).unwrap();
+    assert_eq!(files.count(), 2);
+}
+
+#[test]
+fn one_run_does_not_write_over_another_that_goes_on() {
+    let folder = folder_with(&endless());
+    let mut first = begun(folder.path(), &["run", "s.toml"]);
+    let second = output(folder.path(), &["run", "s.toml", "--force"]);
+    assert_eq!(second.status.code(), Some(2));
+    assert!(said(&second.stderr).contains("s.partial.rrd is being written by another torquescope"));
+    let recovering = output(folder.path(), &["recover", "s.partial.rrd"]);
+    assert_eq!(recovering.status.code(), Some(2));
+    assert!(said(&recovering.stderr).contains("is being written by another torquescope"));
+    first.kill().unwrap();
+    first.wait().unwrap();
+    // Nor over what it left.
+    let third = output(folder.path(), &["run", "s.toml"]);
+    assert_eq!(third.status.code(), Some(2));
+    assert!(said(&third.stderr).contains("`torquescope recover s.partial.rrd` makes a whole"));
+}
+
+/// At 200 moments from before the file is there to well within it, by seed.
+#[test]
+fn whatever_the_moment_a_killed_run_leaves_what_can_be_made_whole() {
+    let folder = folder_with(&endless());
+    let partial = folder.path().join("s.partial.rrd");
+    let whole = folder.path().join("s.rrd");
+    // Twice as long as it takes until there is much in it.
+    let start = Instant::now();
+    let mut first = begun(folder.path(), &["run", "s.toml"]);
+    let longest = 2.0 * start.elapsed().as_secs_f64();
+    first.kill().unwrap();
+    first.wait().unwrap();
+    let mut opened = 0;
+    for k in 0..200 {
+        let mut child = torquescope(folder.path(), &["run", "s.toml", "--force"])
+            .stderr(Stdio::null())
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_secs_f64(longest * draw::unit(11, k)));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert!(!whole.exists(), "{k}: it has its name before it is whole");
+        if !partial.exists() {
+            continue;
+        }
+        let recovered = output(folder.path(), &["recover", "s.partial.rrd", "--json"]);
+        let why = said(&recovered.stderr);
+        match recovered.status.code() {
+            Some(2) => assert!(
+                why.contains("there is nothing in it yet") || why.contains("is no Rerun recording"),
+                "{k}: {why}"
+            ),
+            Some(0) => {
+                opened += 1;
+                let report: serde_json::Value = serde_json::from_slice(&recovered.stdout).unwrap();
+                assert!(report["rows"].as_u64().unwrap() > 0, "{k}");
+                assert_eq!(flaw(&whole), None, "{k}");
+                assert!(!partial.exists(), "{k}");
+                std::fs::remove_file(&whole).unwrap();
+            }
+            other => panic!("{k}: exit code {other:?}: {why}"),
+        }
+        let _ = std::fs::remove_file(&partial);
+    }
+    // Most moments are within the run.
+    assert!(opened >= 60, "{opened}");
+}
+
+#[test]
+fn signals_finish_the_file() {
+    for (name, code) in [("-INT", 130), ("-TERM", 143)] {
+        let folder = folder_with(&endless());
+        let child = begun(folder.path(), &["run", "s.toml"]);
+        signal(&child, name);
+        let done = child.wait_with_output().unwrap();
+        let said = said(&done.stderr);
+        assert_eq!(done.status.code(), Some(code), "{said}");
+        assert!(said.contains("stopped at t = "), "{said}");
+        assert!(!folder.path().join("s.partial.rrd").exists());
+        assert_eq!(flaw(&folder.path().join("s.rrd")), None);
+    }
+}
+
+#[test]
+fn a_file_that_is_removed_while_it_is_written_is_there_in_the_end() {
+    let folder = folder_with(&endless());
+    let child = begun(folder.path(), &["run", "s.toml"]);
+    std::fs::remove_file(folder.path().join("s.partial.rrd")).unwrap();
+    std::thread::sleep(Duration::from_millis(100));
+    signal(&child, "-INT");
+    let done = child.wait_with_output().unwrap();
+    assert_eq!(done.status.code(), Some(130), "{}", said(&done.stderr));
+    assert_eq!(flaw(&folder.path().join("s.rrd")), None);
+}
+
+/// A disk of one megabyte, in a name space of our own. Says whether there can be one here.
+fn on_a_small_disk(folder: &Path, options: &str, then: &str) -> Option<Output> {
+    let script = format!("mount -t tmpfs -o {options} tmpfs small && {{ {then}; }}");
+    std::fs::create_dir(folder.join("small")).unwrap();
+    let inside = |script: &str| {
+        let mut command = Command::new("unshare");
+        command.current_dir(folder).args([
+            "--user",
+            "--map-root-user",
+            "--mount",
+            "sh",
+            "-c",
+            script,
+        ]);
+        command.env("T", cargo_bin("torquescope"));
+        command.output()
+    };
+    let can = inside("mount -t tmpfs tmpfs small").is_ok_and(|done| done.status.success());
+    if !can {
+        eprintln!("no disk of one's own can be mounted here: not tested");
+        return None;
+    }
+    Some(inside(&script).unwrap())
+}
+
+#[test]
+fn a_full_disk_is_told_and_what_is_there_is_kept() {
+    let folder = folder_with(&endless());
+    let then = "cd small; $T run ../s.toml; code=$?; ls; $T recover s.partial.rrd --out ../s.rrd; exit $code";
+    let Some(done) = on_a_small_disk(folder.path(), "size=3m", then) else {
+        return;
+    };
+    let (out, why) = (said(&done.stdout), said(&done.stderr));
+    assert_eq!(done.status.code(), Some(1), "{why}");
+    assert!(
+        why.starts_with("s.rrd: writing stopped: No space left on device (os error 28); make room there, or record fewer streams or less often; what was recorded until then is in "),
+        "{why}"
+    );
+    assert!(
+        out.contains("s.partial.rrd\n") && !out.contains("\ns.rrd\n"),
+        "{out}"
+    );
+    assert_eq!(flaw(&folder.path().join("s.rrd")), None);
+}
+
+#[test]
+fn a_device_that_is_full_is_told() {
+    if !Path::new("/dev/full").exists() {
+        return;
+    }
+    let folder = folder_with(SHORT);
+    let done = output(folder.path(), &["run", "s.toml", "--out", "/dev/full"]);
+    let why = said(&done.stderr);
+    assert_eq!(done.status.code(), Some(1), "{why}");
+    assert!(
+        why.starts_with("/dev/full: writing stopped: No space left on device"),
+        "{why}"
+    );
+}
+
+#[test]
+fn a_disk_that_is_only_read_is_told_before_anything_is_computed() {
+    let folder = folder_with(&endless());
+    let Some(done) = on_a_small_disk(folder.path(), "ro", "cd small; $T run ../s.toml") else {
+        return;
+    };
+    let why = said(&done.stderr);
+    assert_eq!(done.status.code(), Some(2), "{why}");
+    assert!(
+        why.contains("cannot be written: Read-only file system"),
+        "{why}"
+    );
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_failure() {
+    let folder = folder_with(SHORT);
+    let mut child = torquescope(folder.path(), &["run", "s.toml", "--explain"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    assert!(child.wait().unwrap().success());
+    assert_eq!(flaw(&folder.path().join("s.rrd")), None);
+}
+
+fn recording(scene: &str) -> (tempfile::TempDir, PathBuf, Vec<u8>) {
+    let folder = folder_with(scene);
+    let done = output(folder.path(), &["run", "s.toml"]);
+    assert!(done.status.success(), "{}", said(&done.stderr));
+    let path = folder.path().join("s.rrd");
+    let bytes = std::fs::read(&path).unwrap();
+    (folder, path, bytes)
+}
+
+/// Where the message before the footer is: each begins with its kind, 0 for the end, and its length.
+fn last_message(bytes: &[u8]) -> Range<usize> {
+    let number = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
+    let (mut before, mut at) = (12, 12);
+    while number(at) != 0 {
+        before = at;
+        at += 16 + number(at + 8);
+    }
+    before..at
+}
+
+#[test]
+fn no_changed_byte_passes() {
+    let few = format!("{SHORT}[record]\nstreams = [\"torque\", \"omega\"]\n");
+    let (_folder, path, bytes) = recording(&few);
+    assert_eq!(flaw(&path), None);
+    // Everywhere, and every byte of the head and of the end.
+    let anywhere = (0..200).map(|k| (draw::unit(7, k) * bytes.len() as f64) as usize);
+    let ends = bytes.len() - 32..bytes.len();
+    let places = anywhere.chain(0..12).chain(ends);
+    // The last checksums are of what comes before them, and of no use to anybody.
+    let last = last_message(&bytes);
+    for place in places.filter(|place| !last.contains(place)) {
+        let mut changed = bytes.clone();
+        changed[place] ^= 1 << (place % 8);
+        std::fs::write(&path, &changed).unwrap();
+        assert!(flaw(&path).is_some(), "byte {place} of {}", bytes.len());
+    }
+}
+
+#[test]
+fn no_cut_passes() {
+    let (_folder, path, bytes) = recording(SHORT);
+    for k in 0..200 {
+        let length = (draw::unit(8, k) * bytes.len() as f64) as usize;
+        std::fs::write(&path, &bytes[..length]).unwrap();
+        assert!(flaw(&path).is_some(), "{length} of {}", bytes.len());
+    }
+}
+
+#[test]
+fn what_is_damaged_is_left_out_and_the_rest_recovered() {
+    let (folder, path, mut bytes) = recording(SHORT);
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 64;
+    std::fs::write(&path, &bytes).unwrap();
+    let done = output(folder.path(), &["recover", "s.rrd"]);
+    let out = said(&done.stdout);
+    assert_eq!(done.status.code(), Some(1), "{out}");
+    assert!(
+        out.contains("of it are not those that were written"),
+        "{out}"
+    );
+    assert!(
+        out.contains(
+            "left out, because their bytes are not those that were written: 1 of its chunks"
+        ),
+        "{out}"
+    );
+    assert!(path.exists());
+    assert_eq!(flaw(&folder.path().join("s-recovered.rrd")), None);
+    let whole = output(folder.path(), &["recover", "s-recovered.rrd"]);
+    assert!(whole.status.success());
+    assert!(said(&whole.stdout).ends_with("is whole; there is nothing to recover\n"));
+}
