@@ -373,6 +373,34 @@ fn cases() -> Vec<(&'static str, String, &'static str, String)> {
             ),
         ),
         (
+            "rate-above-steps",
+            one(
+                "[stepping]\nstep = 0.01\n[record]\nrates = { energy = 50, torque = 240 }",
+                WHEEL,
+                "",
+            ),
+            "240",
+            one(
+                "[stepping]\nstep = 0.01\n[record]\nrates = { energy = 50, torque = \"every\" }",
+                WHEEL,
+                "",
+            ),
+        ),
+        (
+            "unrecorded-rate",
+            one(
+                "[record]\nstreams = [\"torque\"]\nrates = { alpha = 5 }",
+                WHEEL,
+                "",
+            ),
+            "5",
+            one(
+                "[record]\nstreams = [\"torque\"]\nrates = { torque = 5 }",
+                WHEEL,
+                "",
+            ),
+        ),
+        (
             "unused-allow",
             one("allow = [\"cut-event\"]", WHEEL, ""),
             "\"cut-event\"",

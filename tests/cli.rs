@@ -157,10 +157,10 @@ fn a_file_that_is_no_recording_is_not_overwritten() {
         std::fs::read_to_string(folder.path().join("s.toml")).unwrap(),
         scene
     );
-    // An earlier recording is replaced.
+    // An earlier recording is replaced where that is meant.
     for _ in 0..2 {
         torquescope(folder.path())
-            .args(["run", "s.toml"])
+            .args(["run", "s.toml", "--force"])
             .assert()
             .success();
     }
@@ -180,7 +180,7 @@ fn a_disk_that_fills_up_is_told_once_and_without_a_panic() {
     assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
     assert_eq!(
         text(&output.stderr),
-        "/dev/full: writing stopped: Failed to write: No space left on device (os error 28); make room there, or record fewer streams or less often\n"
+        "/dev/full: writing stopped: No space left on device (os error 28); make room there, or record fewer streams or less often\n"
     );
 }
 
@@ -502,12 +502,18 @@ fn cost_overwrites_nothing_but_its_own_results() {
         assert_eq!(std::fs::read(&path).unwrap(), b"precious");
         std::fs::remove_file(path).unwrap();
     }
-    for _ in 0..2 {
-        assert_eq!(
-            cost(folder.path(), &["--out", "pre"]).status.code(),
-            Some(0)
-        );
-    }
+    let run = |more: &[&str]| {
+        let output = cost(folder.path(), &[&["--out", "pre"], more].concat());
+        (output.status.code(), text(&output.stderr))
+    };
+    assert_eq!(run(&[]).0, Some(0));
+    let (code, said) = run(&[]);
+    assert_eq!(code, Some(2));
+    assert_eq!(
+        said,
+        "pre.svg exists; --force replaces it, or choose another --out\n"
+    );
+    assert_eq!(run(&["--force"]).0, Some(0));
 }
 
 #[test]
@@ -519,7 +525,7 @@ fn a_plan_is_explained() {
         command
             .arg("run")
             .arg(&scene)
-            .args(["--explain"])
+            .args(["--explain", "--force"])
             .args(more);
         text(&command.output().unwrap().stdout)
     };

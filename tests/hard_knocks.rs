@@ -7,7 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use torquescope::math::draw;
-use torquescope::record::{self, ReadError};
+use torquescope::record::{self, Destination, Heading, ReadError, Recorder};
+use torquescope::scene::Scene;
+use torquescope::sim::Simulation;
+use torquescope::trace::{self, Note, Sample, Sink, SinkError, Track};
 
 /// Short, with a push.
 const SHORT: &str = "duration = 0.5\n[effects]\ngyroscopic = true\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 2, 2.5]\nangular_velocity = [1, 0.1, 0]\n[[event]]\nat = 0.05\nfor = 0.2\nbody = \"a\"\nforce = [0, 0, 3.0]\npoint = { body = [0.5, 0.1, 0] }\n";
@@ -174,6 +177,80 @@ fn whatever_the_moment_a_killed_run_leaves_what_can_be_made_whole() {
     }
     // Most moments are within the run.
     assert!(opened >= 60, "{opened}");
+}
+
+/// Records, and looks at every so many instants at what a killed program would leave.
+struct Watched {
+    recorder: Recorder,
+    partial: PathBuf,
+    folder: PathBuf,
+    every: usize,
+    seen: usize,
+    looked: usize,
+}
+
+impl Sink for Watched {
+    fn motions(&mut self, track: &Track<'_>) -> Result<(), SinkError> {
+        self.recorder.motions(track)
+    }
+
+    fn samples(
+        &mut self,
+        at: trace::Instant,
+        bodies: Range<usize>,
+        samples: &[Sample],
+    ) -> Result<(), SinkError> {
+        self.recorder.samples(at, bodies, samples)?;
+        self.seen += 1;
+        if !self.seen.is_multiple_of(self.every) {
+            return Ok(());
+        }
+        self.looked += 1;
+        let copy = self.folder.join("copy.rrd");
+        std::fs::copy(&self.partial, &copy).unwrap();
+        let to = Destination::new(self.folder.join("copy-recovered.rrd")).replacing(true);
+        let found = record::recover(&copy, &to).unwrap();
+        // States come before what is derived of them.
+        assert!(found.until >= at.time, "{} s at {} s", found.until, at.time);
+        assert_eq!(found.cut, 0);
+        let again = Destination::new(self.folder.join("again.rrd"));
+        assert_eq!(record::recover(&to.path, &again).unwrap().flaw, None);
+        Ok(())
+    }
+
+    fn note(&mut self, at: trace::Instant, note: &Note) -> Result<(), SinkError> {
+        self.recorder.note(at, note)
+    }
+}
+
+#[test]
+fn what_waits_in_memory_is_in_the_file_in_time_and_leaves_no_trace_in_the_end() {
+    let folder = folder_with(SHORT);
+    let scene = Scene::load(&folder.path().join("s.toml")).unwrap();
+    let mut files = Vec::new();
+    // All at once, and as late as can be.
+    for (name, keeps_up) in [("soon.rrd", Duration::ZERO), ("late.rrd", Duration::MAX)] {
+        let simulation = Simulation::new(&scene);
+        let subjects = simulation.subjects().to_vec();
+        let heading = Heading::of(&scene, &simulation);
+        let to = Destination {
+            keeps_up,
+            ..Destination::new(folder.path().join(name))
+        };
+        let mut watched = Watched {
+            recorder: Recorder::create(&to, &heading, &subjects).unwrap(),
+            partial: record::partial_name(&to.path),
+            folder: folder.path().to_owned(),
+            every: if keeps_up.is_zero() { 7 } else { usize::MAX },
+            seen: 0,
+            looked: 0,
+        };
+        simulation.run(&mut watched).1.unwrap();
+        assert!(keeps_up > Duration::ZERO || watched.looked >= 4);
+        watched.recorder.finish().unwrap();
+        files.push(std::fs::read(&to.path).unwrap());
+    }
+    assert!(files[0] == files[1]);
 }
 
 #[test]

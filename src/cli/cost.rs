@@ -5,7 +5,7 @@ use super::{Told, Wrong, print};
 use crate::cost::{self, Advice, Cost, Ladder, Progress, Race, Rung, Spread, plot};
 use crate::integrator::{self, METHODS, Method};
 use crate::record::{Destination, Heading, RecordError, Recorder};
-use crate::scene::{Scene, StateRate, Stepping};
+use crate::scene::{Rate, Scene, Stepping};
 use crate::sim::{Choose, Simulation};
 use crate::trace::{StreamSet, short};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -183,7 +183,7 @@ fn weigh(scene: &Scene, chooser: &mut dyn Choose) -> Option<u64> {
         return None;
     }
     let mut scene = scene.clone();
-    scene.record.state = StateRate::EveryStep;
+    scene.record.state = Rate::EveryStep;
     let mut recorded = || -> Result<Option<u64>, RecordError> {
         let simulation = Simulation::new(&scene);
         let subjects = simulation.subjects().to_vec();

@@ -3,7 +3,7 @@
 use super::print;
 use crate::effect::{Argument, EFFECTS};
 use crate::mass::solids::SOLIDS;
-use crate::scene::keys::{ATTITUDE, Key, Keys, POINT_OF_BODY, Registry, SCENE, Takes};
+use crate::scene::keys::{ATTITUDE, HOW_OFTEN, Key, Keys, POINT_OF_BODY, Registry, SCENE, Takes};
 use serde_json::{Map, Value, json};
 
 /// Print the JSON Schema of scenes, by which editors complete and check them.
@@ -190,8 +190,15 @@ fn entries(registry: Registry, definitions: &mut Map<String, Value>) -> Vec<(Str
             };
             EFFECTS.iter().map(effect).collect()
         }
+        Registry::Streams => {
+            let rate = |name: &str| {
+                let schema = Value::Object(takes(&HOW_OFTEN, definitions));
+                (name.to_owned(), schema)
+            };
+            registry.names().into_iter().map(rate).collect()
+        }
         // Their names are values, not keys.
-        Registry::Methods | Registry::Streams | Registry::Warnings => Vec::new(),
+        Registry::Methods | Registry::Warnings => Vec::new(),
     }
 }
 
@@ -321,6 +328,7 @@ fn page() -> String {
         text += match keys.also {
             Some(Registry::Solids) => "\nThe solids and their lengths: `torquescope solids`.\n",
             Some(Registry::Effects) => "\nThe effects and what they take: `torquescope effects`.\n",
+            Some(Registry::Streams) => "\nThe streams: `torquescope streams`.\n",
             _ => "",
         };
     }

@@ -1,7 +1,7 @@
 //! Runs kept at a few instants, to be compared.
 
 use crate::math::angle_between;
-use crate::scene::{Scene, StateRate};
+use crate::scene::{Rate, Scene};
 use crate::sim::{Choose, Outcome, SimError, Simulation};
 use crate::trace::{Instant, Note, Sample, Sink, SinkError, StreamSet, Subject, Track};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -155,8 +155,9 @@ pub fn bare(scene: &Scene, step: f64, rate: f64) -> Scene {
     let mut scene = scene.clone();
     scene.step = step;
     scene.record.rate = rate;
-    scene.record.state = StateRate::PerSecond(rate);
+    scene.record.state = Rate::PerSecond(rate);
     scene.record.streams = StreamSet::none();
+    scene.record.rates.clear();
     for body in &mut scene.bodies {
         body.method = None;
     }

@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub type Column = (ComponentDescriptor, ListArray);
 
 /// When the rows of a chunk happened.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Times {
     nanoseconds: Vec<i64>,
     steps: Vec<i64>,

@@ -113,7 +113,7 @@ impl Output {
         let last = std::fs::canonicalize(&to.path).unwrap_or_else(|_| to.path.clone());
         let path = to.meanwhile.clone().unwrap_or_else(|| partial_name(&last));
         let file = Partial::create(&path, to.replace)?;
-        let file = file.map_err(|error| fail(&path, &error))?;
+        let file = file.map_err(|error| fail(&to.path, &error))?;
         Ok(Self::of(Kind::Partial(Partial {
             file,
             path,

@@ -24,13 +24,15 @@ pub struct Heading {
     pub id: String,
     /// s.
     pub duration: f64,
-    /// Of the derived streams, 1/s.
+    /// Of the derived streams that have none of their own, 1/s.
     pub rate: f64,
     /// Of those that last, s.
     pub shortest_event: Option<f64>,
     pub has_pushes: bool,
     pub has_impulses: bool,
     pub streams: StreamSet,
+    /// The same in sets that are due together.
+    pub bands: Vec<StreamSet>,
     /// What accuracy costs on the scene, where that is what the recording is about.
     pub price: Option<Cost>,
     pub(super) scales: Scales,
@@ -43,6 +45,7 @@ impl Heading {
             .iter()
             .map(|event| event.action.lasts())
             .filter(|&s| s > 0.0);
+        let bands = scene.record.bands().into_iter();
         Self {
             title: scene.title.clone(),
             variant: scene.variant.clone(),
@@ -57,6 +60,7 @@ impl Heading {
             has_pushes: scene.events.iter().any(|event| event.action.pushes()),
             has_impulses: scene.events.iter().any(|event| event.action.strikes()),
             streams: scene.record.streams,
+            bands: bands.map(|(_, streams)| streams).collect(),
             price: None,
             scales: Scales::new(simulation.subjects(), &simulation.expected()),
         }

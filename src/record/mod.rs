@@ -5,6 +5,7 @@
 //! `/numbers/NAME`, the same quantities as f64 columns. Pictures hang on the bodies by frames, so
 //! that no pose is stored twice. Static things are written once, everything else by columns.
 
+mod band;
 mod blueprint;
 mod columns;
 mod compare;

@@ -1,26 +1,26 @@
 //! A trace on its way into a file: buffered by body, written by whole chunks.
 
-use super::columns::{Ends, Times, counts, numbers, texts, vectors};
+use super::band::{Band, Pages};
+use super::columns::{Ends, Times, counts, numbers, vectors};
 use super::compare::{Comparison, Difference, Verdict};
 use super::heading::Heading;
 use super::layout::{self, MOST_TABS, Setting};
 use super::look;
 use super::mesh;
-use super::page;
-use super::picture::{Impulses, Picture, pictures};
+use super::picture::Impulses;
 use super::price;
 use super::rrd::{RrdFile, Store};
 use super::sources::{self, Sources};
 use super::swarm::SwarmRecorder;
 use super::{Destination, RecordError};
 use crate::trace::{
-    Instant, Motion, Note, NoteKind, Quantity, STREAMS, Sample, Sink, SinkError, Subject, Track,
+    Instant, Motion, Note, NoteKind, STREAMS, Sample, Sink, SinkError, StreamSet, Subject, Track,
 };
 use rerun::archetypes::{
     CoordinateFrame, Ellipsoids3D, Mesh3D, Points3D, RecordingInfo, StateChange, TextDocument,
     TextLog, Transform3D, ViewCoordinates,
 };
-use rerun::components::{Color, FillMode, MediaType, Radius, Scalar, TextLogLevel};
+use rerun::components::{Color, FillMode, Radius, Scalar, TextLogLevel};
 use rerun::{Component as _, ComponentDescriptor, TimePoint, Timeline};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -50,6 +50,7 @@ pub struct Recorder {
 }
 
 /// The trace that is being written.
+#[derive(Clone)]
 struct Trace {
     hash_times: Times,
     hashes: Vec<u64>,
@@ -71,19 +72,14 @@ pub struct Summary {
     pub verdicts: Vec<Verdict>,
 }
 
+#[derive(Clone)]
 struct BodyRecorder {
     subject: Subject,
-    quantities: Vec<&'static Quantity>,
-    pictures: Vec<Box<dyn Picture>>,
-    /// Where its torques are told apart.
-    sources: Option<Sources>,
-    pages: Option<Vec<String>>,
     state_times: Times,
     positions: Vec<f32>,
     attitudes: Vec<f32>,
     omegas: Vec<f64>,
-    times: Times,
-    values: Vec<(Vec<f64>, Ends)>,
+    bands: Vec<Band>,
 }
 
 impl Recorder {
@@ -155,6 +151,17 @@ impl Recorder {
         })
     }
 
+    /// Writes what waits in memory, where it has waited as long as it may: behind the end of what is settled, so that
+    /// what the file holds in the end does not depend on when that was.
+    fn keep_up(&mut self) -> Result<(), RecordError> {
+        if !self.file.is_behind() {
+            return Ok(());
+        }
+        self.file.begin_tail();
+        self.trace.clone().flush(&mut self.file)?;
+        self.file.end_tail()
+    }
+
     fn end(&mut self) -> Result<(), RecordError> {
         self.trace.flush(&mut self.file)?;
         let Some(verdict) = self.file.verdict() else {
@@ -203,8 +210,7 @@ impl Trace {
         }
         let sources = sources::all_names(setting.subjects);
         for (k, subject) in setting.subjects.iter().enumerate() {
-            let mut body = BodyRecorder::new(subject, k, heading);
-            body.sources = Sources::of(subject, &sources, &heading.scales);
+            let body = BodyRecorder::new(subject, k, heading, &sources);
             body.statics(file, k, heading)?;
             bodies.push(body);
         }
@@ -232,7 +238,9 @@ impl Trace {
     fn flush(&mut self, file: &mut RrdFile) -> Result<(), RecordError> {
         for body in &mut self.bodies {
             body.flush_state(file)?;
-            body.flush_derived(file)?;
+            for band in &mut body.bands {
+                band.flush(file, &body.subject)?;
+            }
         }
         for swarm in &mut self.swarms {
             swarm.flush(file)?;
@@ -267,7 +275,7 @@ impl Sink for Recorder {
         for swarm in &mut self.trace.swarms {
             swarm.motions(&mut self.file, track)?;
         }
-        Ok(())
+        Ok(self.keep_up()?)
     }
 
     fn samples(
@@ -280,12 +288,15 @@ impl Sink for Recorder {
             impulses.clear(&mut self.file, at, || timepoint(at))?;
         }
         for (body, sample) in self.trace.bodies[bodies].iter_mut().zip(samples) {
-            body.sample(at, sample);
-            if body.times.len() >= self.trace.derived_rows {
-                body.flush_derived(&mut self.file)?;
+            let due = |band: &&mut Band| sample.due.meets(band.streams);
+            for band in body.bands.iter_mut().filter(due) {
+                band.sample(at, &body.subject, sample);
+                if band.times.len() >= self.trace.derived_rows {
+                    band.flush(&mut self.file, &body.subject)?;
+                }
             }
         }
-        Ok(())
+        Ok(self.keep_up()?)
     }
 
     fn note(&mut self, at: Instant, note: &Note) -> Result<(), SinkError> {
@@ -348,23 +359,25 @@ fn timepoint(at: Instant) -> TimePoint {
 }
 
 impl BodyRecorder {
-    fn new(subject: &Subject, index: usize, heading: &Heading) -> Self {
-        let streams = heading.streams;
-        let quantities = streams.quantities();
-        // A page is for reading: only bodies that have a tab have one.
-        let has_page = streams.contains("numbers") && index < MOST_TABS;
+    fn new(subject: &Subject, index: usize, heading: &Heading, sources: &[&str]) -> Self {
+        let band = |&streams: &StreamSet| {
+            let mut band = Band::new(streams, heading);
+            // A page is for reading: only bodies that have a tab have one.
+            if streams.contains("numbers") && index < MOST_TABS {
+                band.pages = Some(Pages::of(heading.streams));
+            }
+            if streams.contains("sources") {
+                band.sources = Sources::of(subject, sources, &heading.scales);
+            }
+            band
+        };
         Self {
             subject: subject.clone(),
-            values: quantities.iter().map(|_| Default::default()).collect(),
-            quantities,
-            pictures: pictures(streams, &heading.scales),
-            sources: None,
-            pages: has_page.then(Vec::new),
             state_times: Times::default(),
             positions: Vec::new(),
             attitudes: Vec::new(),
             omegas: Vec::new(),
-            times: Times::default(),
+            bands: heading.bands.iter().map(band).collect(),
         }
     }
 
@@ -396,17 +409,8 @@ impl BodyRecorder {
         if heading.streams.contains("inertia") {
             self.ellipsoid(file)?;
         }
-        for picture in &self.pictures {
-            picture.statics(file, subject)?;
-        }
-        if let Some(sources) = &self.sources {
-            sources.statics(file, subject)?;
-        }
-        if self.pages.is_some() {
-            let markdown = TextDocument::update_fields().with_media_type(MediaType::markdown());
-            file.statics(format!("/pages/{name}"), &[&markdown])?;
-        }
-        Ok(())
+        let mut bands = self.bands.iter();
+        bands.try_for_each(|band| band.statics(file, subject))
     }
 
     /// The equivalent ellipsoid: translucent, turning with the body.
@@ -431,24 +435,6 @@ impl BodyRecorder {
         self.attitudes
             .extend(motion.q_wb.coords.iter().map(|&x| x as f32));
         self.omegas.extend(motion.omega_w.iter());
-    }
-
-    fn sample(&mut self, at: Instant, sample: &Sample) {
-        self.times.push(at);
-        for (quantity, (values, ends)) in self.quantities.iter().zip(&mut self.values) {
-            let before = values.len();
-            (quantity.write)(&self.subject, sample, values);
-            ends.push(values.len() - before);
-        }
-        for picture in &mut self.pictures {
-            picture.row(at, &self.subject, sample);
-        }
-        if let Some(sources) = &mut self.sources {
-            sources.row(at, &self.subject, sample);
-        }
-        if let Some(pages) = &mut self.pages {
-            pages.push(page::page(&self.subject, at, sample, &self.quantities));
-        }
     }
 
     /// The state: f32 pose for the picture, f64 angular velocity.
@@ -478,32 +464,6 @@ impl BodyRecorder {
             &times,
             vec![quaternion, omega],
         )?;
-        Ok(())
-    }
-
-    fn flush_derived(&mut self, file: &mut RrdFile) -> Result<(), RecordError> {
-        let name = &self.subject.name;
-        let times = std::mem::take(&mut self.times);
-        let mut columns = Vec::with_capacity(self.quantities.len());
-        for (quantity, slot) in self.quantities.iter().zip(&mut self.values) {
-            let (values, ends) = std::mem::take(slot);
-            columns.push(numbers(number_descriptor(quantity.name), values, ends));
-        }
-        if !columns.is_empty() {
-            file.columns(format!("/numbers/{name}"), &times, columns)?;
-        }
-        for picture in &mut self.pictures {
-            picture.flush(file, &self.subject)?;
-        }
-        if let Some(sources) = &mut self.sources {
-            sources.flush(file, &self.subject)?;
-        }
-        if let Some(pages) = &mut self.pages {
-            let pages = std::mem::take(pages);
-            let ends = Ends::uniform(pages.len(), 1);
-            let text = texts(TextDocument::descriptor_text(), pages, ends);
-            file.columns(format!("/pages/{name}"), &times, vec![text])?;
-        }
         Ok(())
     }
 }

@@ -203,8 +203,7 @@ impl RrdFile {
         self.kept_up.elapsed() >= self.keeps_up
     }
 
-    /// From here on what is written is not settled. Its rows stay where they were taken from, see
-    /// [`take`](Self::take), and will be written again.
+    /// From here on what is written is not settled: it will be written again.
     pub fn begin_tail(&mut self) {
         self.tail = Some(Tail::default());
     }
@@ -215,14 +214,6 @@ impl RrdFile {
         let done = self.frames.output().tail(&tail.bytes);
         self.kept_up = Instant::now();
         done.map_err(|error| self.stopped(&error))
-    }
-
-    /// Rows for a chunk, which stay where they are if the chunk is not settled.
-    pub fn take<T: Clone + Default>(&self, rows: &mut T) -> T {
-        match self.tail {
-            Some(_) => rows.clone(),
-            None => std::mem::take(rows),
-        }
     }
 
     fn partial(&mut self) -> Option<String> {

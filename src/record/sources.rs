@@ -13,6 +13,7 @@ use super::rrd::RrdFile;
 use super::scale::Scales;
 use crate::trace::{Instant, Sample, Subject};
 use nalgebra::Vector3;
+use std::sync::Arc;
 
 /// The components of a torque, and its length.
 pub const PARTS: [&str; 4] = ["x", "y", "z", "length"];
@@ -43,6 +44,7 @@ pub fn numbers_path(subject: &Subject, source: &str) -> String {
 }
 
 /// The sources of one body, on their way into a file.
+#[derive(Clone)]
 pub struct Sources {
     times: Times,
     /// The parts of each source, and of the sum of all.
@@ -63,7 +65,7 @@ impl Sources {
                 unit: "N·m",
                 colour: colour(name, all),
                 scale: scales.of_stream("torque"),
-                value: Box::new(move |_, sample| {
+                value: Arc::new(move |_, sample| {
                     sample.sources.get(k).copied().unwrap_or_default()
                 }),
             };

@@ -17,6 +17,7 @@ use rerun::archetypes::{Boxes3D, Ellipsoids3D, InstancePoses3D};
 use rerun::components::{Color, FillMode, HalfSize3D};
 use std::ops::Range;
 
+#[derive(Clone)]
 pub struct SwarmRecorder {
     path: String,
     members: Range<usize>,

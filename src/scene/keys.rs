@@ -205,7 +205,7 @@ pub static RECORD: Keys = Keys {
         .default("60"),
         key(
             "state",
-            Takes::Either(&[Takes::Words(&["every"]), Takes::Positive("1/s")]),
+            HOW_OFTEN,
             "pose and angular velocity: at every step, or samples per simulated second",
         )
         .default("\"every\""),
@@ -215,7 +215,22 @@ pub static RECORD: Keys = Keys {
             "what to record",
         )
         .default("all but step_time"),
+        key(
+            "rates",
+            Takes::Table(&RATES),
+            "streams that go at a rate of their own",
+        ),
     ],
+    ..PLAIN
+};
+
+/// A rate: every step, or so many a second.
+pub const HOW_OFTEN: Takes = Takes::Either(&[Takes::Words(&["every"]), Takes::Positive("1/s")]);
+
+pub static RATES: Keys = Keys {
+    name: "[record.rates]",
+    about: "Streams that go at a rate of their own: each by its name, \"every\" (step) or samples per simulated second.",
+    also: Some(Registry::Streams),
     ..PLAIN
 };
 

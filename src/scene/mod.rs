@@ -98,23 +98,45 @@ impl Stepping {
 pub struct Record {
     /// Derived streams: samples per simulated second. Events always.
     pub rate: f64,
-    pub state: StateRate,
+    pub state: Rate,
     pub streams: StreamSet,
+    /// Streams that go at a rate of their own, each once.
+    pub rates: Vec<(StreamSet, Rate)>,
 }
 
 impl Record {
     /// The highest rate that is asked for, 1/s; every step counts as the derived streams' rate.
     fn fastest(&self) -> f64 {
-        match self.state {
-            StateRate::EveryStep => self.rate,
-            StateRate::PerSecond(rate) => rate.max(self.rate),
+        let own = self.rates.iter().map(|(_, rate)| *rate);
+        own.chain([self.state])
+            .filter_map(|rate| match rate {
+                Rate::EveryStep => None,
+                Rate::PerSecond(rate) => Some(rate),
+            })
+            .fold(self.rate, f64::max)
+    }
+
+    /// The streams by how often they are due: those at `rate` first, whether there are any or not.
+    pub fn bands(&self) -> Vec<(Rate, StreamSet)> {
+        let mut bands = vec![(Rate::PerSecond(self.rate), self.streams)];
+        for &(stream, rate) in &self.rates {
+            let stream = stream.and(self.streams);
+            if stream.is_empty() {
+                continue;
+            }
+            bands[0].1 = bands[0].1.without(stream);
+            match bands.iter_mut().find(|(known, _)| *known == rate) {
+                Some((_, band)) => *band = band.with(stream),
+                None => bands.push((rate, stream)),
+            }
         }
+        bands
     }
 }
 
-/// How often the state (pose and angular velocity) is recorded.
+/// How often something is recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum StateRate {
+pub enum Rate {
     EveryStep,
     /// Samples per simulated second.
     PerSecond(f64),

@@ -6,7 +6,7 @@ use super::keys;
 use super::problem::Problems;
 use super::table::{Node, Table, nearest};
 use super::warnings::{self, Finds, WARNINGS};
-use super::{Record, Scene, StateRate, Stepping, body, event, pairing};
+use super::{Rate, Record, Scene, Stepping, body, event, pairing};
 use crate::integrator::{self, DEFAULT_METHOD, Kind, METHODS, Method};
 use crate::trace::{STREAMS, StreamSet};
 use std::ops::Range;
@@ -359,8 +359,9 @@ fn record(top: &Table<'_>, problems: &mut Problems) -> (Option<Record>, bool) {
     let Some(table) = top.table("record", problems) else {
         let record = Record {
             rate: DEFAULT_RATE,
-            state: StateRate::EveryStep,
+            state: Rate::EveryStep,
             streams: StreamSet::default_set(),
+            rates: Vec::new(),
         };
         return (Some(record), false);
     };
@@ -374,26 +375,48 @@ fn record_table(table: &Table<'_>, problems: &mut Problems) -> Option<Record> {
         Some(node) => node.positive(PER_SECOND, problems),
     };
     let state = match table.get("state") {
-        None => Some(StateRate::EveryStep),
-        Some(node) => state_rate(&node, problems),
+        None => Some(Rate::EveryStep),
+        Some(node) => how_often(&node, problems),
     };
     let streams = match table.get("streams") {
         None => Some(StreamSet::default_set()),
         Some(node) => streams(&node, problems),
+    };
+    let rates = match table.get("rates") {
+        None => Some(Vec::new()),
+        Some(node) => node
+            .table("[record.rates]".to_owned(), problems)
+            .and_then(|table| rates(&table, problems)),
     };
     table.check_keys(problems);
     Some(Record {
         rate: rate?,
         state: state?,
         streams: streams?,
+        rates: rates?,
     })
+}
+
+/// The rates of streams that have their own; the names of all streams are its keys.
+fn rates(table: &Table<'_>, problems: &mut Problems) -> Option<Vec<(StreamSet, Rate)>> {
+    let mut rates = Vec::new();
+    let mut all_right = true;
+    for stream in STREAMS {
+        let Some(node) = table.get(stream.name) else {
+            continue;
+        };
+        let rate = StreamSet::of(stream.name).zip(how_often(&node, problems));
+        all_right &= rate.is_some();
+        rates.extend(rate);
+    }
+    (!table.check_keys(problems) && all_right).then_some(rates)
 }
 
 const PER_SECOND: &str = "samples per simulated second";
 
-fn state_rate(node: &Node<'_>, problems: &mut Problems) -> Option<StateRate> {
+fn how_often(node: &Node<'_>, problems: &mut Problems) -> Option<Rate> {
     if node.is_number() {
-        return Some(StateRate::PerSecond(node.positive(PER_SECOND, problems)?));
+        return Some(Rate::PerSecond(node.positive(PER_SECOND, problems)?));
     }
     if node.str(problems)? != "every" {
         node.problem(
@@ -402,7 +425,7 @@ fn state_rate(node: &Node<'_>, problems: &mut Problems) -> Option<StateRate> {
         );
         return None;
     }
-    Some(StateRate::EveryStep)
+    Some(Rate::EveryStep)
 }
 
 fn streams(node: &Node<'_>, problems: &mut Problems) -> Option<StreamSet> {

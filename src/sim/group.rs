@@ -9,7 +9,7 @@ use crate::effect::{Decay, Frame, Load, Member, Pulse, Push, Term, WrenchBlock};
 use crate::integrator::{Interval, Kind, Method, Refusal, Step, Stepper, Work};
 use crate::mass::tensor;
 use crate::scene::{Body, Change, Event, Framed, Scene, lasting};
-use crate::trace::{Deviation, Motion, PointForce, Sample, Subject};
+use crate::trace::{Deviation, Motion, PointForce, Sample, StreamSet, Subject};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
 
@@ -420,19 +420,20 @@ impl Group {
 
     /// The states and what the model says follows, at time `t`.
     pub fn samples(&self, t: f64) -> Vec<Sample> {
-        self.samples_of(t, &self.state)
+        self.samples_of(t, &self.state, true)
     }
 
-    /// The same of the `k`-th state kept of the last stretch, which was at time `t`.
-    pub fn samples_kept(&self, k: usize, t: f64) -> Vec<Sample> {
-        self.samples_of(t, &self.kept[k])
+    /// The same of the `k`-th state kept of the last stretch, which was at time `t`; whether its torques
+    /// are told apart.
+    pub fn samples_kept(&self, k: usize, t: f64, apart: bool) -> Vec<Sample> {
+        self.samples_of(t, &self.kept[k], apart)
     }
 
-    fn samples_of(&self, t: f64, block: &StateBlock) -> Vec<Sample> {
+    fn samples_of(&self, t: f64, block: &StateBlock, apart: bool) -> Vec<Sample> {
         let wrench = self.wrench(t, block);
-        let parts = self.parts(t, block);
+        let parts = apart.then(|| self.parts(t, block));
         (0..self.members.len())
-            .map(|lane| self.sample_of(lane, block.get(lane), (t, &wrench), &parts))
+            .map(|lane| self.sample_of(lane, block.get(lane), (t, &wrench), parts.as_ref()))
             .collect()
     }
 
@@ -441,7 +442,7 @@ impl Group {
         let wrench = self.wrench(t, &self.state);
         let parts = self.parts(t, &self.state);
         let lane = body - self.members.start;
-        self.sample_of(lane, self.state.get(lane), (t, &wrench), &parts)
+        self.sample_of(lane, self.state.get(lane), (t, &wrench), Some(&parts))
     }
 
     /// Each effect's own share, where any body wants to know it.
@@ -462,7 +463,7 @@ impl Group {
         lane: usize,
         state: State,
         (t, wrench): (f64, &WrenchBlock),
-        parts: &Parts<'_>,
+        parts: Option<&Parts<'_>>,
     ) -> Sample {
         let inertial = self.inertial.get(lane);
         let mut tau_w = wrench.get(lane).tau_w;
@@ -477,13 +478,17 @@ impl Group {
         let pushes = self.pushes.iter().filter(|(push, _)| push.lane == lane);
         let pushes = pushes.map(|(push, pulse)| acting(push, pulse.part(t), &state));
         Sample {
+            due: StreamSet::none(),
             motion: self.motion(lane, state),
             tau_w,
             alpha_w,
             pushes: pushes.collect(),
-            sources: self.sources.get(lane).map_or_else(Vec::new, |names| {
-                parts.torques(names, (&self.load, lane), &inertial, &state)
-            }),
+            sources: match (self.sources.get(lane), parts) {
+                (Some(names), Some(parts)) => {
+                    parts.torques(names, (&self.load, lane), &inertial, &state)
+                }
+                _ => Vec::new(),
+            },
             deviation: Deviation::default(),
             step_time: None,
         }

@@ -19,7 +19,8 @@ use crate::integrator::{Kind, Step, Work};
 use crate::scene::pick::{self, Picked};
 use crate::scene::{Action, Click, Event, Scene, Stepping, Target};
 use crate::trace::{
-    Instant, Motion, Note, NoteKind, PointForce, Sample, Sink, SinkError, Subject, Track, short,
+    Instant, Motion, Note, NoteKind, PointForce, Sample, Sink, SinkError, StreamSet, Subject,
+    Track, short,
 };
 use group::Group;
 use nalgebra::Vector3;
@@ -50,6 +51,9 @@ pub struct Simulation<'s> {
     watches: Vec<RefCell<Watch>>,
     /// Whether a stream compares with the truth.
     compared: bool,
+    /// The streams that tell torques apart, and those that say how far it is from the truth.
+    apart: StreamSet,
+    judged: StreamSet,
     /// Whether steps are timed.
     timed: bool,
     /// Mean wall time of the last stretch's steps of a group, s.
@@ -171,6 +175,8 @@ impl<'s> Simulation<'s> {
             truths: truths(scene),
             watches: vec![RefCell::default(); scene.outside_swarms()],
             compared: is_compared(scene),
+            apart: streams(&["sources", "numbers"]),
+            judged: streams(&["error", "drift", "numbers"]),
             timed: scene.record.streams.contains("step_time"),
             step_time: None,
             stop: None,
@@ -308,7 +314,7 @@ impl<'s> Simulation<'s> {
         self.must_be_finite(start, &all, sink)?;
         self.set_out(&all, schedule, chooser);
         let samples = self.samples_outside_swarms(|group| group.samples(start.time));
-        self.deliver(0, start, samples, sink)?;
+        self.deliver(0, start, (samples, self.scene.record.streams), sink)?;
         self.deliver_fingerprint(start, sink)?;
         loop {
             let first = schedule.now();
@@ -329,11 +335,7 @@ impl<'s> Simulation<'s> {
             }
             if !stretch.happenings.is_empty() {
                 let now = schedule.now();
-                let shown = stretch.kept.last().is_some_and(|last| last.display);
-                let before = match shown {
-                    true => Vec::new(),
-                    false => self.before(now, &stretch.happenings),
-                };
+                let before = self.before(now, &stretch);
                 let applied = self.apply(now, &stretch.happenings, schedule);
                 let touched = self.touched(&applied);
                 for Before { body, sample, news } in &before {
@@ -451,14 +453,15 @@ impl<'s> Simulation<'s> {
             })?;
         }
         for (k, kept) in stretch.kept.iter().enumerate() {
-            if kept.display {
-                let time = kept.at.time;
-                let samples = self.samples_outside_swarms(|group| group.samples_kept(k, time));
-                self.deliver(0, kept.at, samples, sink)?;
-                if sink.wants_fingerprints() {
-                    let mix = |hash, group: &Group| group.hash_kept_into(k, hash);
-                    sink.fingerprint(kept.at, self.groups.iter().fold(HASH_START, mix))?;
-                }
+            if kept.display || !kept.due.is_empty() {
+                let (time, apart) = (kept.at.time, kept.due.meets(self.apart));
+                let samples =
+                    self.samples_outside_swarms(|group| group.samples_kept(k, time, apart));
+                self.deliver_when(0, kept.at, (samples, kept.due), kept.display, sink)?;
+            }
+            if kept.display && sink.wants_fingerprints() {
+                let mix = |hash, group: &Group| group.hash_kept_into(k, hash);
+                sink.fingerprint(kept.at, self.groups.iter().fold(HASH_START, mix))?;
             }
         }
         Ok(())
@@ -500,7 +503,10 @@ impl<'s> Simulation<'s> {
             kind: NoteKind::Failure,
             strike: None,
         };
-        let samples = self.samples_outside_swarms(|group| group.samples(at.time));
+        let mut samples = self.samples_outside_swarms(|group| group.samples(at.time));
+        for sample in &mut samples {
+            sample.due = self.scene.record.streams;
+        }
         let written = sink
             .samples(at, 0..samples.len(), &samples)
             .and_then(|()| sink.note(at, &note));
@@ -560,8 +566,18 @@ impl<'s> Simulation<'s> {
         Ok(())
     }
 
-    /// The bodies that some happenings may touch, as they are before.
-    fn before(&self, now: Instant, happenings: &[Happening]) -> Vec<Before> {
+    /// The bodies that the happenings at a stretch's end may touch, as they are before; where some streams have
+    /// been recorded there the others.
+    fn before(&self, now: Instant, stretch: &Stretch) -> Vec<Before> {
+        let all = self.scene.record.streams;
+        let (shown, due) = match stretch.kept.last() {
+            Some(last) => (last.display, all.without(last.due)),
+            None => (false, all),
+        };
+        if shown && due.is_empty() {
+            return Vec::new();
+        }
+        let happenings = &stretch.happenings;
         let mut bodies: Vec<usize> = Vec::new();
         let event = |happening: &Happening| &self.scene.events[happening.event()];
         let sets = |happening| matches!(event(happening).action, Action::Set(_));
@@ -589,6 +605,8 @@ impl<'s> Simulation<'s> {
         bodies.dedup();
         let before = |body| {
             let mut sample = self.group_of(body).sample(body, now.time);
+            sample.due = due;
+            sample.step_time = self.step_time;
             let news = self.judge(body, &mut sample, now);
             Before { body, sample, news }
         };
@@ -799,7 +817,7 @@ impl<'s> Simulation<'s> {
             .take_while(|body| **body < self.outside_swarms)
         {
             let sample = vec![self.group_of(body).sample(body, now.time)];
-            self.deliver(body, now, sample, sink)?;
+            self.deliver(body, now, (sample, self.scene.record.streams), sink)?;
         }
         Ok(())
     }
@@ -810,21 +828,35 @@ impl<'s> Simulation<'s> {
         &self,
         first: usize,
         at: Instant,
-        mut samples: Vec<Sample>,
+        samples: (Vec<Sample>, StreamSet),
+        sink: &mut dyn Sink,
+    ) -> Result<(), SinkError> {
+        self.deliver_when(first, at, samples, true, sink)
+    }
+
+    /// The same; they are looked for drift where that is asked for, or where a stream that is due says it.
+    fn deliver_when(
+        &self,
+        first: usize,
+        at: Instant,
+        (mut samples, due): (Vec<Sample>, StreamSet),
+        looked: bool,
         sink: &mut dyn Sink,
     ) -> Result<(), SinkError> {
         let mut news = Vec::new();
         for (body, sample) in (first..).zip(&mut samples) {
-            news.extend(self.judge(body, sample, at));
+            sample.due = due;
+            sample.step_time = self.step_time;
+            if looked || due.meets(self.judged) {
+                news.extend(self.judge(body, sample, at));
+            }
         }
         sink.samples(at, first..first + samples.len(), &samples)?;
         warn(at, &news, sink)
     }
 
-    /// Adds to a sample how far it is from the truth, where that is known and recorded, and what a step took; what is
-    /// found to drift.
+    /// Adds to a sample how far it is from the truth, where that is known and recorded; what is found to drift.
     fn judge(&self, body: usize, sample: &mut Sample, at: Instant) -> Vec<Warning> {
-        sample.step_time = self.step_time;
         let subject = &self.subjects[body];
         let mut truth = self.truths[body].borrow_mut();
         let deviation = truth.deviation(subject, sample, at.time);
@@ -887,6 +919,11 @@ impl<'s> Simulation<'s> {
         }
         Ok(())
     }
+}
+
+fn streams(names: &[&str]) -> StreamSet {
+    let sets = names.iter().filter_map(|name| StreamSet::of(name));
+    sets.fold(StreamSet::none(), StreamSet::with)
 }
 
 fn is_compared(scene: &Scene) -> bool {

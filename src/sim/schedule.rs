@@ -5,8 +5,8 @@
 
 use super::script::Happening;
 use crate::integrator::Step;
-use crate::scene::{Scene, StateRate};
-use crate::trace::Instant;
+use crate::scene::{Rate, Scene};
+use crate::trace::{Instant, StreamSet};
 
 /// A place on the clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,8 +37,10 @@ pub struct Kept {
     pub at: Instant,
     /// Whether it is recorded as part of the state.
     pub state: bool,
-    /// Whether the derived streams are due.
+    /// Whether it is an instant of the display rate: hashes are recorded, and it is looked for drift.
     pub display: bool,
+    /// The derived streams that are due.
+    pub due: StreamSet,
 }
 
 impl Stretch {
@@ -62,6 +64,7 @@ impl Stretch {
                 at: self.after(taken - 1, first),
                 state: true,
                 display: false,
+                due: StreamSet::none(),
             });
         }
         Self {
@@ -80,12 +83,20 @@ const MOST_STATES: u64 = 200_000;
 /// thousand body-steps.
 const SHORTEST_STRETCH: u64 = 64;
 
+/// Streams that are due together.
+struct Band {
+    rate: Rate,
+    streams: StreamSet,
+    /// Sampling instants that have been delivered.
+    shown: f64,
+}
+
 pub struct Schedule<'s> {
     scene: &'s Scene,
     now: Node,
     steps: u64,
-    /// Sampling instants of the derived streams that have been delivered.
-    shown: f64,
+    /// The derived streams by how often they are due, the display rate first.
+    bands: Vec<Band>,
     /// Begins and ends after the start, in order of time.
     happenings: Vec<(Node, Vec<Happening>)>,
     /// How many of them are past.
@@ -108,6 +119,12 @@ impl<'s> Schedule<'s> {
             group.sort_by_key(|happening| matches!(happening, Happening::Begins(_)));
         }
         nodes.retain(|(at, _)| !before(end, *at));
+        let bands = scene.record.bands().into_iter();
+        let bands = bands.map(|(rate, streams)| Band {
+            rate,
+            streams,
+            shown: 0.0,
+        });
         Self {
             scene,
             now: Node {
@@ -116,7 +133,7 @@ impl<'s> Schedule<'s> {
                 time: 0.0,
             },
             steps: 0,
-            shown: 0.0,
+            bands: bands.collect(),
             happenings: nodes,
             past: 0,
             end,
@@ -141,8 +158,8 @@ impl<'s> Schedule<'s> {
         while before(self.now, target) {
             let index = stretch.steps.len();
             let (mut step, state) = self.step_towards(target);
-            let display = self.display_is_due();
-            step.keep = state || display;
+            let (display, due) = self.streams_due();
+            step.keep = state || display || !due.is_empty();
             stretch.steps.push(step);
             if step.keep {
                 stretch.kept.push(Kept {
@@ -150,6 +167,7 @@ impl<'s> Schedule<'s> {
                     at: self.now(),
                     state,
                     display,
+                    due,
                 });
             }
         }
@@ -238,23 +256,37 @@ impl<'s> Schedule<'s> {
         (step, state)
     }
 
-    /// Whether the derived streams are due here; counts the instant as shown.
-    fn display_is_due(&mut self) -> bool {
-        let here = self.now;
-        let ticks = ticks(here.grid, self.scene.step, self.scene.record.rate);
-        let due = here.rest == 0.0 && ticks > self.shown;
-        if due {
-            self.shown = ticks;
+    /// Whether the display rate is due here, and which streams; counts the instant as shown.
+    fn streams_due(&mut self) -> (bool, StreamSet) {
+        let (here, h) = (self.now, self.scene.step);
+        let ended = !before(here, self.end);
+        let (mut display, mut due) = (false, StreamSet::none());
+        for (k, band) in self.bands.iter_mut().enumerate() {
+            let now = match band.rate {
+                Rate::EveryStep => true,
+                Rate::PerSecond(rate) => {
+                    let ticks = ticks(here.grid, h, rate);
+                    let now = here.rest == 0.0 && ticks > band.shown;
+                    if now {
+                        band.shown = ticks;
+                    }
+                    now
+                }
+            };
+            if now || ended {
+                display |= k == 0;
+                due = due.with(band.streams);
+            }
         }
-        due || !before(here, self.end)
+        (display, due)
     }
 
     /// Whether a sampling instant of the state lies in a step.
     fn state_is_due(&self, from: Node, to: Node) -> bool {
         let h = self.scene.step;
         match self.scene.record.state {
-            StateRate::EveryStep => true,
-            StateRate::PerSecond(rate) => ticks(to.grid, h, rate) > ticks(from.grid, h, rate),
+            Rate::EveryStep => true,
+            Rate::PerSecond(rate) => ticks(to.grid, h, rate) > ticks(from.grid, h, rate),
         }
     }
 

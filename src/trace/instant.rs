@@ -1,5 +1,6 @@
 //! Bodies and what is known of them at an instant.
 
+use super::streams::StreamSet;
 use crate::mass::solids::Solid;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use std::sync::Arc;
@@ -120,6 +121,8 @@ pub struct Deviation {
 /// A body at an instant: its state and what the model says follows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
+    /// The streams that are to be recorded of it. Sources and deviations are there only where these say them.
+    pub due: StreamSet,
     pub motion: Motion,
     /// Applied torque about the reference point, world, N·m: everything but the gyroscopic term.
     pub tau_w: Vector3<f64>,

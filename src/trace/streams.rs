@@ -131,6 +131,24 @@ impl StreamSet {
         Self(self.0 | other.0)
     }
 
+    /// Those that are in both.
+    pub fn and(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
+    pub fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Whether any is in both.
+    pub fn meets(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
     pub fn contains(self, name: &str) -> bool {
         Self::of(name).is_some_and(|one| self.0 & one.0 != 0)
     }

@@ -10,6 +10,7 @@ use crate::trace::{Instant, Sample, Subject, brief};
 use rerun::archetypes::{Arrows3D, LineStrips3D};
 use rerun::components::Radius;
 
+#[derive(Clone)]
 pub struct ForcePicture {
     drawn: &'static Drawn,
     /// m per N.
@@ -72,6 +73,10 @@ impl Picture for ForcePicture {
         }
         self.arrows.ends.push(sample.pushes.len());
         self.labels.end_row(sample.pushes.len());
+    }
+
+    fn copy(&self) -> Box<dyn Picture> {
+        Box::new(self.clone())
     }
 
     fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {

@@ -13,6 +13,7 @@ use rerun::archetypes::{Arrows3D, Points3D};
 use rerun::components::Radius;
 
 /// The arrows of impulses that are still shown.
+#[derive(Clone)]
 pub struct Impulses {
     /// m per N·s.
     scale: f64,

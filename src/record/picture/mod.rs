@@ -15,6 +15,7 @@ use super::scale::Scales;
 use crate::sim::Sizes;
 use crate::trace::{Instant, Sample, StreamSet, Subject};
 use nalgebra::Vector3;
+use std::sync::Arc;
 
 /// A stream that is drawn as arrows.
 pub struct Drawn {
@@ -113,8 +114,18 @@ pub trait Picture {
     /// Adds what is seen at an instant.
     fn row(&mut self, at: Instant, subject: &Subject, sample: &Sample);
 
+    /// The same, with what was added.
+    fn copy(&self) -> Box<dyn Picture>;
+
     /// Writes what was added.
     fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError>;
+}
+
+impl Clone for Box<dyn Picture> {
+    fn clone(&self) -> Self {
+        // Of what is in the box, not of the box.
+        self.as_ref().copy()
+    }
 }
 
 /// The pictures of the chosen streams for one body.
@@ -130,7 +141,7 @@ pub fn pictures(streams: StreamSet, scales: &Scales) -> Vec<Box<dyn Picture>> {
                     unit: drawn.unit,
                     colour: drawn.colour,
                     scale,
-                    value: Box::new(value),
+                    value: Arc::new(value),
                 })
             };
             match drawn.glyph {

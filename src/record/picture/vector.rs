@@ -14,6 +14,7 @@ use crate::trace::{Instant, Sample, Subject, brief};
 use nalgebra::Vector3;
 use rerun::archetypes::{Arrows3D, CoordinateFrame, LineStrips3D, Points3D, Transform3D};
 use rerun::components::Radius;
+use std::sync::Arc;
 
 /// The ring: its radius and its place along the axis, in lengths of the arrow; its arc.
 const RING_RADIUS: f64 = 0.2;
@@ -22,9 +23,10 @@ const RING_ARC: f64 = 1.75 * std::f64::consts::PI;
 const RING_PIECES: usize = 28;
 
 /// The vector of a body at an instant.
-pub type Value = Box<dyn Fn(&Subject, &Sample) -> Vector3<f64>>;
+pub type Value = Arc<dyn Fn(&Subject, &Sample) -> Vector3<f64> + Send + Sync>;
 
 /// Which vector, and how it looks.
+#[derive(Clone)]
 pub struct Shown {
     /// The first part of its entities' paths.
     pub stream: String,
@@ -37,6 +39,7 @@ pub struct Shown {
     pub value: Value,
 }
 
+#[derive(Clone)]
 pub struct VectorPicture {
     shown: Shown,
     times: Times,
@@ -46,7 +49,7 @@ pub struct VectorPicture {
 }
 
 /// The rings of several rows, and the arrowheads that end them.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Turns {
     rings: Vec<f32>,
     points: Ends,
@@ -54,7 +57,7 @@ struct Turns {
 }
 
 /// Arrows of several rows.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Arrows {
     pub origins: Vec<f32>,
     pub vectors: Vec<f32>,
@@ -63,7 +66,7 @@ pub struct Arrows {
 
 /// Labels of several rows, each at a point. Rerun would put an arrow's label at its middle, where
 /// those of arrows along one axis cover each other.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Labels {
     places: Vec<f32>,
     texts: Vec<String>,
@@ -250,6 +253,10 @@ impl Picture for VectorPicture {
             }
             turns.heads.ends.push(usize::from(shown));
         }
+    }
+
+    fn copy(&self) -> Box<dyn Picture> {
+        Box::new(self.clone())
     }
 
     fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {

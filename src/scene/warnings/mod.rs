@@ -52,6 +52,7 @@ pub const WARNINGS: &[Warning] = &[
     warning("quaternion-order", "an orientation is [1, 0, 0, 0], half a turn about x", size::quaternion_order),
     warning("quaternion-length", "an orientation of four numbers is far from unit length", size::quaternion_length),
     warning("rate-above-steps", "more is to be recorded than there are steps", record::rate_above_steps),
+    warning("unrecorded-rate", "a stream that is not recorded has a rate", record::unrecorded_rate),
     warning(UNUSED, "a warning is allowed that there is no reason for", |_, _| {}),
 ];
 

@@ -1,8 +1,9 @@
 //! Warnings about what is recorded.
 
-use super::{Context, Found};
+use super::{Context, Found, Table};
 use crate::scene::problem::Problems;
-use crate::scene::{StateRate, Stepping};
+use crate::scene::{Rate, Stepping};
+use crate::trace::STREAMS;
 
 pub fn rate_above_steps(context: &Context<'_, '_>, found: &mut Found) {
     // With an accuracy the clock is the recording's own.
@@ -10,8 +11,13 @@ pub fn rate_above_steps(context: &Context<'_, '_>, found: &mut Found) {
         return;
     }
     let (record, steps) = (&context.scene.record, 1.0 / context.scene.step);
-    let table = context.top.table("record", &mut Problems::new("", ""));
-    let mut see = |key: &'static str, rate: f64| {
+    let mut quiet = Problems::new("", "");
+    let table = context.top.table("record", &mut quiet);
+    let rates = table
+        .as_ref()
+        .and_then(|table| table.table("rates", &mut quiet));
+    let mut see = |table: &Option<Table<'_>>, key: &'static str, rate: Rate| {
+        let Rate::PerSecond(rate) = rate else { return };
         // What is written as 1/60 is not quite that.
         let node = table.as_ref().and_then(|table| table.get(key));
         if let Some(node) = node.filter(|_| rate > steps * (1.0 + 1e-6)) {
@@ -22,8 +28,31 @@ pub fn rate_above_steps(context: &Context<'_, '_>, found: &mut Found) {
             });
         }
     };
-    see("rate", record.rate);
-    if let StateRate::PerSecond(rate) = record.state {
-        see("state", rate);
+    see(&table, "rate", Rate::PerSecond(record.rate));
+    see(&table, "state", record.state);
+    for &(stream, rate) in &record.rates {
+        for stream in stream.iter() {
+            see(&rates, stream.name, rate);
+        }
+    }
+}
+
+pub fn unrecorded_rate(context: &Context<'_, '_>, found: &mut Found) {
+    let mut quiet = Problems::new("", "");
+    let record = context.top.table("record", &mut quiet);
+    let Some(rates) = record.and_then(|table| table.table("rates", &mut quiet)) else {
+        return;
+    };
+    for stream in STREAMS {
+        if let Some(node) = rates.get(stream.name)
+            && !context.scene.record.streams.contains(stream.name)
+        {
+            found.add(node.span, || {
+                format!(
+                    "{} has a rate and is not recorded; add it to [record] streams, or leave out its rate",
+                    stream.name
+                )
+            });
+        }
     }
 }
