@@ -73,11 +73,21 @@ impl Inertial {
         state.to_world(self.inv_moments.component_mul(&self.gyroscopic_p(state)))
     }
 
-    /// `-ω × I ω` in principal axes, N·m.
     #[inline(always)]
     fn gyroscopic_p(&self, state: &State) -> Vector3<f64> {
-        let omega_p = state.to_principal(state.omega_w);
-        self.moments.component_mul(&omega_p).cross(&omega_p)
+        self.gyroscopic_torque_p(state.to_principal(state.omega_w))
+    }
+
+    /// `-ω × I ω`, all in principal axes, N·m: `((I2 - I3) ω2 ω3, …)`. By the differences of the moments, because
+    /// about the axis of a thin rod what is left is divided by a moment far below the two that almost cancel.
+    #[inline(always)]
+    pub fn gyroscopic_torque_p(&self, omega_p: Vector3<f64>) -> Vector3<f64> {
+        let (i, w) = (self.moments, omega_p);
+        Vector3::new(
+            (i.y - i.z) * (w.y * w.z),
+            (i.z - i.x) * (w.z * w.x),
+            (i.x - i.y) * (w.x * w.y),
+        )
     }
 }
 

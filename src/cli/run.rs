@@ -5,7 +5,7 @@ use crate::cost::{Plan, PlanError};
 use crate::effect::Profile;
 use crate::record::{self, Heading, Made, Provenance, RecordError, Recorder, Summary};
 use crate::scene::{Event, Finding, Scene, SceneError, Script, Stepping};
-use crate::sim::{Blow, Outcome, SimError, Simulation};
+use crate::sim::{Blow, Outcome, SimError, Simulation, Warning};
 use crate::trace::{Sample, Subject, short, short_numbers, short_vector};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -100,6 +100,9 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let start =
         |heading: &Heading, subjects: &[Subject]| Recorder::create(&path, heading, subjects);
     let (ran, summary) = record(&scenes, &plans, &headings, start)?;
+    for warning in ran.iter().flat_map(|ran| &ran.outcome.warnings) {
+        print::err(&format!("warning: {warning}"));
+    }
     if arguments.json {
         report(&scenes, &plans, &ran, &summary)?;
     } else {
@@ -516,6 +519,8 @@ struct Report<'a> {
     duration: f64,
     blows: Vec<BlowReport<'a>>,
     bodies: Vec<BodyReport<'a>>,
+    /// What drifted beyond what is to be expected of the method.
+    warnings: Vec<WarningReport<'a>>,
     recording: RecordingReport,
     /// How it was stepped, where that was planned.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -523,6 +528,19 @@ struct Report<'a> {
     /// Why it stopped before its end.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
+}
+
+#[derive(Serialize)]
+struct WarningReport<'a> {
+    body: &'a str,
+    drifts: &'static str,
+    method: &'static str,
+    /// When a sample first showed it.
+    time: f64,
+    step: u64,
+    /// What was allowed then and the largest until the end: parts of what there is; of an attitude rad.
+    allowed: f64,
+    worst: f64,
 }
 
 #[derive(Serialize)]
@@ -596,6 +614,15 @@ impl<'a> Report<'a> {
             angular_momentum: subject.momentum_w(&sample.motion).into(),
             energy: subject.energy(&sample.motion),
         };
+        let warning = |warning: &Warning| WarningReport {
+            body: &subjects[warning.body].name,
+            drifts: warning.drifts.describe(),
+            method: warning.method,
+            time: warning.began.time,
+            step: warning.began.step,
+            allowed: warning.allowed,
+            worst: warning.worst,
+        };
         Self {
             scene: &scene.name,
             title: &scene.title,
@@ -606,6 +633,7 @@ impl<'a> Report<'a> {
             duration: scene.duration,
             blows: outcome.blows.iter().map(blow).collect(),
             bodies: subjects.iter().zip(&outcome.end).map(body).collect(),
+            warnings: outcome.warnings.iter().map(warning).collect(),
             recording: RecordingReport {
                 path: summary.path.display().to_string(),
                 bytes: summary.bytes,

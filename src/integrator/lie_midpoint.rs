@@ -14,6 +14,7 @@
 
 use super::common::{Acceleration, DecayFactors, Forces, damp, each_lane, with_forces};
 use super::one_step::OneStep;
+use super::scalar::kept_unit;
 use super::{Accepts, Cost, Damping, Interval, Kind, MethodInfo, Models};
 use crate::body::{LANES, QuaternionLanes, State, StateBlock};
 use crate::math::{exponential, exponential_by_series, is_short};
@@ -128,12 +129,12 @@ fn kernel(
     turn: Quaternion<f64>,
     s: State,
 ) -> State {
-    State {
+    kept_unit(State {
         x_w: s.x_w + at.v_w * h,
         v_w: s.v_w + acceleration.a_w * h,
         q_wp: turn * s.q_wp,
         omega_w: s.omega_w + acceleration.alpha_w * h,
-    }
+    })
 }
 
 #[cfg(test)]

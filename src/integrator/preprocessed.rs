@@ -5,7 +5,7 @@
 //!
 //! Hairer & Vilmart, J. Phys. A 39 (2006) 13225, section 4; their formulas, checked by the slopes.
 
-use crate::math::turned;
+use crate::math::{power, turned};
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
 /// `N, H; N², NH, H²; N³, …; N⁴, …, H⁴`: the terms of orders 4, 6, 8 and 10.
@@ -143,10 +143,10 @@ fn solve(m: &Matrix3<f64>, b: Vector3<f64>) -> Vector3<f64> {
 /// The coefficients of S and of D for moments of about 1.
 #[rustfmt::skip]
 fn coefficients(i: Vector3<f64>) -> ([f64; TERMS], [f64; TERMS]) {
-    let p = |n: i32| i.iter().map(|x| x.powi(n)).sum::<f64>();
+    let p = |n: i32| i.iter().map(|&x| power(x, n)).sum::<f64>();
     let s = |up: i32, down: i32| {
         let cyclic = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];
-        cyclic.map(|[a, b, c]| (i[a].powi(up) + i[b].powi(up)) / i[c].powi(down)).iter().sum::<f64>()
+        cyclic.map(|[a, b, c]| (power(i[a], up) + power(i[b], up)) / power(i[c], down)).iter().sum::<f64>()
     };
     let x = i.x * i.y * i.z;
     let (x2, x3, x4) = (x * x, x * x * x, x * x * x * x);

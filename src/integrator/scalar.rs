@@ -51,6 +51,7 @@ pub fn turned(v: Vector3<f64>, s: State) -> State {
 
 /// The state with `|q| = 1` again. A product of unit quaternions is one but for rounding; a step of
 /// Newton's towards `1/|q|` takes that off, so that it does not add up over a million steps.
+#[inline(always)]
 pub fn kept_unit(s: State) -> State {
     State {
         q_wp: s.q_wp * (1.5 - 0.5 * s.q_wp.norm_squared()),

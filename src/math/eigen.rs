@@ -12,6 +12,11 @@ use nalgebra::{Matrix3, Vector3};
 /// Sweeps allowed. Quadratic convergence needs 4 to 6 in f64; the rest is reserve.
 const SWEEPS: usize = 16;
 
+/// An entry below this part of the two eigenvalues beside it is what rounding leaves of a tensor that somebody
+/// turned (up to three ulps), and moves neither eigenvalue by more. Where they are equal, to follow it would be to
+/// turn their axes by any angle whatever: the frame of a ball, or of a body of revolution, would jitter.
+const NEGLIGIBLE: f64 = 4.0 * f64::EPSILON;
+
 /// `(V, λ)` with `A = V diag(λ) Vᵀ`, V a rotation whose columns are the eigenvectors.
 ///
 /// Only the upper triangle of `a` is read. The order of λ is that of the axes V came from,
@@ -36,8 +41,7 @@ pub fn symmetric_eigen(a: &Matrix3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
 /// Turns the (p, q) plane until `a[p, q]` vanishes; false where it is already negligible.
 fn rotate(a: &mut Matrix3<f64>, v: &mut Matrix3<f64>, p: usize, q: usize) -> bool {
     let off = a[(p, q)];
-    // An entry this small moves neither eigenvalue by a rounding error.
-    let negligible = f64::EPSILON * 0.25 * a[(p, p)].abs().sqrt() * a[(q, q)].abs().sqrt();
+    let negligible = NEGLIGIBLE * a[(p, p)].abs().sqrt() * a[(q, q)].abs().sqrt();
     if off == 0.0 || off.abs() <= negligible {
         a[(p, q)] = 0.0;
         a[(q, p)] = 0.0;

@@ -9,6 +9,7 @@ pub mod elliptic;
 pub mod expansion;
 #[cfg(test)]
 mod oracle;
+mod power;
 mod quaternion;
 mod real;
 mod turns;
@@ -17,6 +18,7 @@ pub use agm::agm;
 pub use dd::Dd;
 pub use eigen::symmetric_eigen;
 pub use expansion::Expansion;
+pub use power::power;
 pub use quaternion::{
     angle_between, axis_angle, exponential, exponential_by_series, is_short, spin_rate, turned,
 };

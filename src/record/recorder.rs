@@ -289,6 +289,7 @@ impl Sink for Recorder {
     fn note(&mut self, at: Instant, note: &Note) -> Result<(), SinkError> {
         let (level, colour) = match (note.kind, note.body) {
             (NoteKind::Failure, _) => (TextLogLevel::ERROR, look::FORCE),
+            (NoteKind::Warning, _) => (TextLogLevel::WARN, look::FORCE),
             (_, Some(body)) => (TextLogLevel::INFO, look::BODIES[body % look::BODIES.len()]),
             (_, None) => (TextLogLevel::INFO, look::NAME),
         };
@@ -303,6 +304,8 @@ impl Sink for Recorder {
         {
             impulses.strike(&mut self.file, (at, when.clone()), subject, strike)?;
         }
+        self.file
+            .row(Store::Recording, "/events", when.clone(), &[&line])?;
         let state = match note.kind {
             NoteKind::Begins => StateChange::single("acts"),
             NoteKind::Instant => StateChange::single("struck"),
@@ -311,9 +314,9 @@ impl Sink for Recorder {
             NoteKind::Ends => StateChange::new().with_state([""]),
             // The lane of the log itself: its notes, one after the other, along the whole scene.
             NoteKind::Remark => StateChange::single(note.text.as_str()),
+            // What acts goes on acting.
+            NoteKind::Warning => return Ok(()),
         };
-        self.file
-            .row(Store::Recording, "/events", when.clone(), &[&line])?;
         let lane = match (note.kind, subject) {
             (NoteKind::Remark, _) | (_, None) => "/events".to_owned(),
             (_, Some(subject)) => format!("/events/{}", subject.name),

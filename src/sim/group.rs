@@ -1,11 +1,11 @@
 //! Up to eight bodies stepped together, and their translation to and from body axes.
 
 use super::Jump;
-use super::choose::{Choose, Setting};
+use super::choose::{Choice, Choose, Setting};
 use super::script::{Acting, Own};
 use super::sources::Parts;
 use crate::body::{Inertial, InertialBlock, LANES, State, StateBlock};
-use crate::effect::{Frame, Load, Member, Pulse, Push, Term, WrenchBlock};
+use crate::effect::{Decay, Frame, Load, Member, Pulse, Push, Term, WrenchBlock};
 use crate::integrator::{Interval, Kind, Method, Refusal, Step, Stepper, Work};
 use crate::mass::tensor;
 use crate::scene::{Body, Change, Event, Framed, Scene, lasting};
@@ -35,6 +35,8 @@ pub struct Group {
     pub method: &'static str,
     /// How it gets through time.
     pub steps: Option<Kind>,
+    /// Its way since it last set out.
+    pub choice: Option<Choice>,
     /// What the steppers before this one did.
     done: Work,
 }
@@ -114,6 +116,7 @@ impl Group {
             kept: Vec::new(),
             method: "",
             steps: None,
+            choice: None,
             done: Work::default(),
         }
     }
@@ -145,6 +148,7 @@ impl Group {
         self.done = self.work();
         self.method = choice.method.info().name;
         self.steps = Some(choice.method.info().kind);
+        self.choice = Some(choice);
         self.stepper = Some(choice.start(interval, t, &self.state));
     }
 
@@ -252,6 +256,12 @@ impl Group {
             .rfind(|&x| x < std::f64::consts::TAU);
         let before = self.before.as_ref().map(|stepper| turn(&stepper.state()));
         sane.or(before).unwrap_or(f64::NAN)
+    }
+
+    /// The larger damping rate times a step of `h`: how far velocities decay in it.
+    pub fn decay_in_a_step(&self, h: f64) -> f64 {
+        let rate = |decay: &Decay| decay.linear_rate().max(decay.angular_rate());
+        h * self.load.decay().map_or(0.0, rate)
     }
 
     pub fn is_gyroscopic(&self) -> bool {

@@ -7,10 +7,12 @@ mod script;
 mod sizes;
 mod sources;
 mod truth;
+mod watch;
 
 pub use choose::{Choice, Choose, Setting, Stated};
 pub use sizes::Sizes;
 pub use sources::GYROSCOPIC;
+pub use watch::{Drifts, Warning};
 
 use crate::body::LANES;
 use crate::integrator::{Kind, Step, Work};
@@ -26,6 +28,7 @@ use script::{Acting, Applied, Done, Happening, Lasting};
 use std::cell::RefCell;
 use std::ops::Range;
 use truth::Truth;
+use watch::{Made, Watch};
 
 /// A scene being stepped.
 pub struct Simulation<'s> {
@@ -41,8 +44,11 @@ pub struct Simulation<'s> {
     notes: Vec<(f64, Note)>,
     noted: usize,
     threads: usize,
-    /// By body; none where no stream compares with the truth.
+    /// By body outside swarms.
     truths: Vec<RefCell<Truth>>,
+    watches: Vec<RefCell<Watch>>,
+    /// Whether a stream compares with the truth.
+    compared: bool,
     /// Whether steps are timed.
     timed: bool,
     /// Mean wall time of the last stretch's steps of a group, s.
@@ -65,6 +71,8 @@ pub struct Outcome {
     pub work: Work,
     /// All bodies at the end, or where the run stopped.
     pub end: Vec<Sample>,
+    /// What drifted beyond what is to be expected of the method.
+    pub warnings: Vec<Warning>,
 }
 
 /// A body at the instant an event began.
@@ -113,6 +121,9 @@ pub enum SimError {
     Sink(#[from] SinkError),
 }
 
+/// Why numbers end, where it is not a method's doing.
+const BEYOND: &str = "a force, an impulse, a speed, a mass or a ratio of moments is too large or too small for 64-bit numbers, or for this method at this step; look at the events and the start";
+
 impl<'s> Simulation<'s> {
     /// Eight bodies that have one model and method go together. Where a scene states an accuracy each goes alone, so
     /// that each has the method it needs.
@@ -145,6 +156,8 @@ impl<'s> Simulation<'s> {
             noted: 0,
             threads: std::thread::available_parallelism().map_or(1, usize::from),
             truths: truths(scene),
+            watches: vec![RefCell::default(); scene.outside_swarms()],
+            compared: is_compared(scene),
             timed: scene.record.streams.contains("step_time"),
             step_time: None,
         };
@@ -258,6 +271,10 @@ impl<'s> Simulation<'s> {
         let works = self.groups.iter().map(Group::work);
         outcome.work = works.fold(Work::default(), |a, b| a + b);
         outcome.end = self.samples(now.time);
+        let watches = self.watches.iter().map(RefCell::borrow);
+        outcome.warnings = watches
+            .flat_map(|watch| watch.told().cloned().collect::<Vec<_>>())
+            .collect();
         (outcome, done)
     }
 
@@ -276,9 +293,8 @@ impl<'s> Simulation<'s> {
         let all: Vec<usize> = (0..self.subjects.len()).collect();
         self.must_be_finite(start, &all, sink)?;
         self.set_out(&all, schedule, chooser);
-        let mut samples = self.samples_outside_swarms(|group| group.samples(start.time));
-        self.judge(0, &mut samples, start.time);
-        sink.samples(start, 0..samples.len(), &samples)?;
+        let samples = self.samples_outside_swarms(|group| group.samples(start.time));
+        self.deliver(0, start, samples, sink)?;
         self.deliver_fingerprint(start, sink)?;
         loop {
             let first = schedule.now();
@@ -291,7 +307,7 @@ impl<'s> Simulation<'s> {
             self.write_notes(&stretch.steps, first, until.time, sink)?;
             if let Some((at, body)) = lost {
                 schedule.stop_at(at);
-                return Err(self.not_finite(at, body, sink));
+                return Err(self.not_finite(at, body, self.cause(body), sink));
             }
             if !stretch.happenings.is_empty() {
                 let now = schedule.now();
@@ -302,11 +318,12 @@ impl<'s> Simulation<'s> {
                 };
                 let applied = self.apply(now, &stretch.happenings, schedule);
                 let touched = self.touched(&applied);
-                for (body, sample) in &before {
+                for Before { body, sample, news } in &before {
                     if touched.binary_search(body).is_ok() {
                         let sample = std::slice::from_ref(sample);
                         sink.samples(now, *body..body + 1, sample)?;
                     }
+                    warn(now, news, sink)?;
                 }
                 if self.log(now, &applied, outcome, sink)? {
                     self.deliver_motions(now, sink)?;
@@ -331,10 +348,11 @@ impl<'s> Simulation<'s> {
             let until = schedule.until(touches);
             self.groups[group].set_out(chooser, now, until);
         }
-        for &body in bodies {
-            let Some(truth) = self.truths.get(body) else {
-                continue;
-            };
+        for &body in bodies
+            .iter()
+            .take_while(|body| **body < self.outside_swarms)
+        {
+            let truth = &self.truths[body];
             let group = self.group_of(body);
             let sample = group.sample(body, now);
             let simulated = (&self.subjects[body], &sample, group, body);
@@ -417,9 +435,8 @@ impl<'s> Simulation<'s> {
         for (k, kept) in stretch.kept.iter().enumerate() {
             if kept.display {
                 let time = kept.at.time;
-                let mut samples = self.samples_outside_swarms(|group| group.samples_kept(k, time));
-                self.judge(0, &mut samples, time);
-                sink.samples(kept.at, 0..samples.len(), &samples)?;
+                let samples = self.samples_outside_swarms(|group| group.samples_kept(k, time));
+                self.deliver(0, kept.at, samples, sink)?;
                 if sink.wants_fingerprints() {
                     let mix = |hash, group: &Group| group.hash_kept_into(k, hash);
                     sink.fingerprint(kept.at, self.groups.iter().fold(HASH_START, mix))?;
@@ -443,12 +460,12 @@ impl<'s> Simulation<'s> {
         };
         match bodies.iter().copied().find(lost) {
             None => Ok(()),
-            Some(body) => Err(self.not_finite(now, body, sink)),
+            Some(body) => Err(self.not_finite(now, body, BEYOND.to_owned(), sink)),
         }
     }
 
     /// Records the broken instant in full and says what happened.
-    fn not_finite(&self, at: Instant, body: usize, sink: &mut dyn Sink) -> SimError {
+    fn not_finite(&self, at: Instant, body: usize, cause: String, sink: &mut dyn Sink) -> SimError {
         let error = SimError::NotFinite {
             body: self.subjects[body].name.clone(),
             time: at.time,
@@ -457,7 +474,7 @@ impl<'s> Simulation<'s> {
                 "" => String::new(),
                 method => format!(", by {method}"),
             },
-            cause: self.cause(body),
+            cause,
         };
         let note = Note {
             body: Some(body),
@@ -475,22 +492,32 @@ impl<'s> Simulation<'s> {
         }
     }
 
-    /// The likeliest reason for a state that is not finite.
+    /// The likeliest reason for a state that a method lost.
     fn cause(&self, body: usize) -> String {
         /// Radians a step, beyond which a term of second order in ω h is no longer small.
         const FAR: f64 = 0.1;
+        /// Radians a step of which a 64-bit number knows no part of a turn.
+        const ABSURD: f64 = 1e16;
         let group = self.group_of(body);
-        if group.steps == Some(Kind::Adaptive) {
+        let turned = group.turn_in_a_step(body, self.scene.step);
+        let absurd = turned.is_nan() || turned > ABSURD;
+        if !absurd && group.steps == Some(Kind::Adaptive) {
             return "no step of its own was short enough to follow the motion; a force or torque there grows without bound, or the tolerance is below what 64-bit numbers resolve".to_owned();
         }
-        let turned = group.turn_in_a_step(body, self.scene.step);
-        if group.steps == Some(Kind::Fixed) && group.is_gyroscopic() && turned > FAR {
+        let decays = group.decay_in_a_step(self.scene.step);
+        if group.steps == Some(Kind::Fixed) && decays > 1.0 {
+            let decays = short(decays);
+            return format!(
+                "damping of c h = {decays} a step is too fast for this method; take a smaller step or another method"
+            );
+        }
+        if !absurd && group.steps == Some(Kind::Fixed) && group.is_gyroscopic() && turned > FAR {
             let turned = short(turned);
             return format!(
                 "it turned {turned} rad a step, too far for the gyroscopic term; take a smaller step or another method"
             );
         }
-        "a force, an impulse, a speed, a mass or a ratio of moments is too large or too small for 64-bit numbers, or for this method at this step; look at the events and the start".to_owned()
+        BEYOND.to_owned()
     }
 
     /// Writes the notes up to a time (s), each at its own, counting the steps from `first` on.
@@ -516,7 +543,7 @@ impl<'s> Simulation<'s> {
     }
 
     /// The bodies that some happenings may touch, as they are before.
-    fn before(&self, now: Instant, happenings: &[Happening]) -> Vec<(usize, Sample)> {
+    fn before(&self, now: Instant, happenings: &[Happening]) -> Vec<Before> {
         let mut bodies: Vec<usize> = Vec::new();
         let event = |happening: &Happening| &self.scene.events[happening.event()];
         let sets = |happening| matches!(event(happening).action, Action::Set(_));
@@ -542,8 +569,12 @@ impl<'s> Simulation<'s> {
         bodies.retain(|body| *body < self.outside_swarms);
         bodies.sort_unstable();
         bodies.dedup();
-        let sample = |body| (body, self.judged(body, now.time));
-        bodies.into_iter().map(sample).collect()
+        let before = |body| {
+            let mut sample = self.group_of(body).sample(body, now.time);
+            let news = self.judge(body, &mut sample, now);
+            Before { body, sample, news }
+        };
+        bodies.into_iter().map(before).collect()
     }
 
     /// Ends and begins events, in their order: what lasts is put among what acts, an instant is done at
@@ -599,7 +630,9 @@ impl<'s> Simulation<'s> {
                 let held = self.scene.bodies[body].pivot_b.is_some();
                 match self.truths.get_mut(body).map(RefCell::get_mut) {
                     // What was lost is known again.
-                    Some(truth) if change.says_all(held) => truth.restart(group.alone(body), at),
+                    Some(truth) if self.compared && change.says_all(held) => {
+                        truth.restart(group.alone(body), at);
+                    }
                     Some(truth) => truth.set(body, change, at),
                     None => {}
                 }
@@ -747,29 +780,52 @@ impl<'s> Simulation<'s> {
             .iter()
             .take_while(|body| **body < self.outside_swarms)
         {
-            sink.samples(now, body..body + 1, &[self.judged(body, now.time)])?;
+            let sample = vec![self.group_of(body).sample(body, now.time)];
+            self.deliver(body, now, sample, sink)?;
         }
         Ok(())
     }
 
-    /// A body as it is, and how far that is from the truth.
-    fn judged(&self, body: usize, t: f64) -> Sample {
-        let mut sample = [self.group_of(body).sample(body, t)];
-        self.judge(body, &mut sample, t);
-        let [sample] = sample;
-        sample
+    /// Delivers the samples of bodies from `first` on, with how far they are from the truth; and then what
+    /// drifts.
+    fn deliver(
+        &self,
+        first: usize,
+        at: Instant,
+        mut samples: Vec<Sample>,
+        sink: &mut dyn Sink,
+    ) -> Result<(), SinkError> {
+        let mut news = Vec::new();
+        for (body, sample) in (first..).zip(&mut samples) {
+            news.extend(self.judge(body, sample, at));
+        }
+        sink.samples(at, first..first + samples.len(), &samples)?;
+        warn(at, &news, sink)
     }
 
-    /// Adds to the samples of bodies from `first` on how far they are from the truth, where it is
-    /// known, and what a step took.
-    fn judge(&self, first: usize, samples: &mut [Sample], t: f64) {
-        for (body, sample) in (first..).zip(samples) {
-            sample.step_time = self.step_time;
-            if let Some(truth) = self.truths.get(body) {
-                let subject = &self.subjects[body];
-                sample.deviation = truth.borrow_mut().deviation(subject, sample, t);
-            }
+    /// Adds to a sample how far it is from the truth, where that is known and recorded, and what a step took; what is
+    /// found to drift.
+    fn judge(&self, body: usize, sample: &mut Sample, at: Instant) -> Vec<Warning> {
+        sample.step_time = self.step_time;
+        let subject = &self.subjects[body];
+        let mut truth = self.truths[body].borrow_mut();
+        let deviation = truth.deviation(subject, sample, at.time);
+        let news = self.group_of(body).choice.map(|choice| {
+            let made = Made {
+                at,
+                body,
+                subject,
+                choice,
+                step: self.scene.step,
+                free: truth.is_exact(),
+            };
+            let mut watch = self.watches[body].borrow_mut();
+            watch.look(&made, sample, &deviation)
+        });
+        if self.compared {
+            sample.deviation = deviation;
         }
+        news.unwrap_or_default()
     }
 
     fn group_of(&self, body: usize) -> &Group {
@@ -815,14 +871,39 @@ impl<'s> Simulation<'s> {
     }
 }
 
-/// The true motion of every body, where a stream compares with it.
-fn truths(scene: &Scene) -> Vec<RefCell<Truth>> {
+fn is_compared(scene: &Scene) -> bool {
     let compared = ["error", "drift"];
-    if !compared
+    let mut recorded = compared
         .iter()
-        .any(|name| scene.record.streams.contains(name))
-    {
-        return Vec::new();
+        .map(|name| scene.record.streams.contains(name));
+    recorded.any(|is| is)
+}
+
+/// A body just before something happens to it.
+struct Before {
+    body: usize,
+    sample: Sample,
+    news: Vec<Warning>,
+}
+
+fn warn(at: Instant, news: &[Warning], sink: &mut dyn Sink) -> Result<(), SinkError> {
+    for warning in news {
+        let note = Note {
+            body: Some(warning.body),
+            text: warning.to_string(),
+            kind: NoteKind::Warning,
+            strike: None,
+        };
+        sink.note(at, &note)?;
+    }
+    Ok(())
+}
+
+/// The true motion of every body, where a stream compares with it; else what its model keeps.
+fn truths(scene: &Scene) -> Vec<RefCell<Truth>> {
+    if !is_compared(scene) {
+        let unknown = (0..scene.outside_swarms()).map(|_| Truth::unknown());
+        return unknown.map(RefCell::new).collect();
     }
     let each = group::groups(scene, 1);
     each.into_iter()

@@ -308,3 +308,45 @@ pub fn ticks(grid: u64, h: f64, rate: f64) -> f64 {
     let ticks = grid as f64 * h * rate;
     (ticks + rounding(ticks)).floor()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A step of 1 ms, summed up 1e12 times, would be off by seconds or so; here a time is a product.
+    #[test]
+    fn after_1e12_steps_the_clock_shows_1e9_seconds_to_the_last_bit() {
+        let text = "duration = 1e9\n[stepping]\nstep = 1e-3\n[record]\nstate = 1e-3\nrate = 1e-3\n\
+                    [[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 1, 1]\n\
+                    [[event]]\nat = 999999999.9995\nbody = \"a\"\ntorque = [1, 0, 0]\n";
+        let scene = Scene::parse("a", "a", text).unwrap();
+        let mut schedule = Schedule::new(&scene);
+        // As it is when all but the last 5,000 steps are done.
+        let done = 1_000_000_000_000 - 5_000;
+        schedule.now = Node {
+            grid: done,
+            rest: 0.0,
+            time: done as f64 * scene.step,
+        };
+        schedule.steps = done;
+        let (mut steps, mut event) = (Vec::new(), None);
+        while let Some(stretch) = schedule.next_stretch() {
+            steps.extend(stretch.steps);
+            if !stretch.happenings.is_empty() {
+                event = steps.last().map(|step| step.to);
+            }
+        }
+        // The event divides one.
+        assert_eq!(steps.len(), 5_001);
+        assert_eq!(event, Some(999_999_999.999_5));
+        assert_eq!(steps.last().map(|step| step.to), Some(1e9));
+        assert_eq!(schedule.now().step, 1_000_000_000_001);
+        for (k, step) in (done..).zip(&steps[..4_999]) {
+            assert_eq!(
+                (step.from, step.to),
+                (k as f64 * 1e-3, (k + 1) as f64 * 1e-3)
+            );
+            assert_eq!(step.h, 1e-3);
+        }
+    }
+}

@@ -76,6 +76,24 @@ impl Truth {
         }
     }
 
+    /// Of a body of which no exact motion goes along.
+    pub fn unknown() -> Self {
+        Self {
+            known: Known::Nothing,
+            energy: 0.0,
+            momentum: 0.0,
+        }
+    }
+
+    /// Whether nothing turns the body.
+    pub fn is_exact(&self) -> bool {
+        match &self.known {
+            Known::Exact { .. } => true,
+            Known::Kept(kept) => matches!(kept.momentum, KeptMomentum::All),
+            Known::Nothing => false,
+        }
+    }
+
     /// Strikes the true body as the simulated one is struck.
     pub fn strike(&mut self, index: usize, impulse: Framed, point: Option<Framed>, at: f64) {
         if let Known::Exact { body, now } = &mut self.known {
@@ -133,8 +151,11 @@ impl Truth {
 
     /// How far the simulated body is off at time `t`.
     pub fn deviation(&mut self, subject: &Subject, sample: &Sample, t: f64) -> Deviation {
+        if matches!(self.known, Known::Nothing) {
+            return Deviation::default();
+        }
         let momentum_w = subject.momentum_w(&sample.motion);
-        let kinetic = subject.energy(&sample.motion);
+        let kinetic = subject.energy_with(&sample.motion, momentum_w);
         let (attitude, energy, momentum) = match &mut self.known {
             Known::Nothing => return Deviation::default(),
             Known::Exact { body, now } => {
@@ -144,8 +165,9 @@ impl Truth {
                 };
                 let off = angle_between(truth.q_wb, sample.motion.q_wb);
                 let true_momentum_w = subject.momentum_w(&truth);
-                let energy = kinetic - subject.energy(&truth);
-                self.energy = self.energy.max(subject.energy(&truth));
+                let true_energy = subject.energy_with(&truth, true_momentum_w);
+                let energy = kinetic - true_energy;
+                self.energy = self.energy.max(true_energy);
                 self.momentum = self.momentum.max(true_momentum_w.norm());
                 let momentum = (momentum_w - true_momentum_w).norm();
                 (Some(off), energy, Some(momentum))

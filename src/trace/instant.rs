@@ -74,7 +74,12 @@ impl Subject {
     /// Kinetic energy, J: of the turning about the reference point, and of the centre of mass
     /// where that is the reference point.
     pub fn energy(&self, motion: &Motion) -> f64 {
-        let turning = 0.5 * motion.omega_w.dot(&self.momentum_w(motion));
+        self.energy_with(motion, self.momentum_w(motion))
+    }
+
+    /// The same where its angular momentum is known (world, kg m²/s).
+    pub fn energy_with(&self, motion: &Motion, momentum_w: Vector3<f64>) -> f64 {
+        let turning = 0.5 * motion.omega_w.dot(&momentum_w);
         match (self.pivot_b, self.mass) {
             (None, Some(mass)) => turning + 0.5 * mass * motion.velocity_w.norm_squared(),
             _ => turning,

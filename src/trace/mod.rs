@@ -44,6 +44,8 @@ pub enum NoteKind {
     Set,
     /// Something to read, which the motion of no body shows.
     Remark,
+    /// Something drifts.
+    Warning,
     /// Something went wrong.
     Failure,
 }

@@ -10,6 +10,10 @@
 //! and a right-hand side costs one rotation and three divisions. (ω_p in place of L costs as much, and
 //! its error in free flow is one more to control.)
 //!
+//! But of a thin body, `I_max > 16 I_min`, ω_p takes the place of L: `ω_p' = I⁻¹ (Rᵀ τ - ω_p × I ω_p)`. There
+//! Rᵀ L over the smallest moment turns an error of q into one of ω that is I_max/I_min times as large: the
+//! equations swing at |L|/I_min, however slowly the body turns, and steps would have to follow that.
+//!
 //! R is that of q/|q|, so that |q| is invariant; q is brought to unit length after the step.
 //!
 //! With damping the variables are e^{kτ} v and e^{cτ} L, τ from the start of the step: a velocity by
@@ -50,7 +54,7 @@ const INFO: MethodInfo = MethodInfo {
     reversible: false,
     keeps_momentum: true,
     exact_free: false,
-    preserves: "a free body's momentum; all else to its tolerance",
+    preserves: "a free body's momentum, of a thin one to its tolerance; all else to its tolerance",
     cost: Cost {
         evaluations: None,
         // A step of its own, tolerance 1e-12.
@@ -72,6 +76,31 @@ impl Method for Dop853 {
     }
 }
 
+/// Which spin stands in the variables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Spin {
+    /// L, world.
+    Momentum,
+    /// ω in principal axes, of a thin body.
+    Principal,
+    /// ω, world: the tutorial's model.
+    Velocity,
+}
+
+/// Moments farther apart than this make a body thin: its steps would be 16 times as short.
+const THIN: f64 = 16.0;
+
+impl Spin {
+    fn of(body: &Inertial, gyroscopic: bool) -> Self {
+        let moments = body.moments;
+        match gyroscopic {
+            false => Self::Velocity,
+            true if moments.max() > THIN * moments.min() => Self::Principal,
+            true => Self::Momentum,
+        }
+    }
+}
+
 /// x, v, q (x, y, z, w) and L or ω; the fourth of a vector is 0.
 type Vector = [[f64; 4]; 4];
 
@@ -85,6 +114,7 @@ const SPIN: usize = 3;
 #[derive(Clone)]
 struct Body {
     lane: usize,
+    spin: Spin,
     terms: Option<Arc<[Term]>>,
     /// Whether what is applied changes with time by itself.
     timed: bool,
@@ -153,15 +183,17 @@ impl Factors {
 impl Body {
     fn new(interval: &Interval, lane: usize, t: f64, start: &State) -> Self {
         let body = interval.inertial.get(lane);
-        let spin_w = match interval.load.gyroscopic() {
-            true => body.momentum_w(start),
-            false => start.omega_w,
+        let spin = Spin::of(&body, interval.load.gyroscopic());
+        let spins = match spin {
+            Spin::Momentum => body.momentum_w(start),
+            Spin::Principal => start.to_principal(start.omega_w),
+            Spin::Velocity => start.omega_w,
         };
         let y = [
             vector(start.x_w),
             vector(start.v_w),
             start.q_wp.coords.into(),
-            vector(spin_w),
+            vector(spins),
         ];
         let rates = interval
             .load
@@ -171,6 +203,7 @@ impl Body {
         let terms = terms.map(Arc::from);
         let mut this = Self {
             lane,
+            spin,
             terms,
             timed: interval.load.changes_with_time(lane, &interval.inertial),
             longest: DECAY_A_STEP / rates,
@@ -199,21 +232,32 @@ impl Body {
         let load = &interval.load;
         let body = interval.inertial.get(self.lane);
         let q = Quaternion::from(y[ATTITUDE]);
-        let (state, omega_p) = state(load.gyroscopic(), &body, y);
+        let (state, omega_p) = state(self.spin, &body, y);
         let mut rate = ZERO;
         rate[PLACE] = y[VELOCITY];
         rate[ATTITUDE] = match omega_p {
             Some(omega_p) => (q * Quaternion::from_imag(omega_p * 0.5)).coords.into(),
             None => spin_rate(state.omega_w, q).coords.into(),
         };
+        let own = match (self.spin, omega_p) {
+            (Spin::Principal, Some(omega_p)) => body.gyroscopic_torque_p(omega_p),
+            _ => Vector3::zeros(),
+        };
+        if self.spin == Spin::Principal {
+            rate[SPIN] = vector(body.inv_moments.component_mul(&own));
+        }
         if !load.applies() {
             return rate;
         }
         let wrench = self.wrench(interval, t, &state);
         rate[VELOCITY] = vector(wrench.force_w * body.inv_mass);
-        rate[SPIN] = vector(match load.gyroscopic() {
-            true => wrench.tau_w,
-            false => body.angular_response(&state, wrench.tau_w),
+        rate[SPIN] = vector(match self.spin {
+            Spin::Momentum => wrench.tau_w,
+            Spin::Principal => {
+                let tau_p = state.to_principal(wrench.tau_w) + own;
+                body.inv_moments.component_mul(&tau_p)
+            }
+            Spin::Velocity => body.angular_response(&state, wrench.tau_w),
         });
         rate
     }
@@ -349,6 +393,21 @@ impl Body {
         [whole, start, ends, upper[0], upper[1], upper[2], upper[3]]
     }
 
+    /// Whether damping has left nothing of its velocities, and nothing pushes: then no step is too long.
+    fn stands(&self, interval: &Interval) -> bool {
+        let still = |part: usize| norm(&self.y[part]) == 0.0;
+        !interval.load.applies() && still(VELOCITY) && still(SPIN)
+    }
+
+    /// One step to `until` in which nothing changes. (What is left has squares of 0.)
+    fn rest_until(&mut self, until: f64) {
+        (self.y[VELOCITY], self.y[SPIN]) = ([0.0; 4], [0.0; 4]);
+        (self.from, self.h, self.reached) = (self.reached, until - self.reached, until);
+        self.y0 = self.y;
+        self.dense = Some([ZERO; 7]);
+        self.work.steps += 1;
+    }
+
     /// Moves to the end of the step that was tried.
     fn accept(&mut self, interval: &Interval, to: f64, h: f64) {
         let y1 = self.y1;
@@ -379,6 +438,10 @@ impl Walk for Body {
     }
 
     fn step(&mut self, interval: &Interval) -> Option<()> {
+        if self.stands(interval) {
+            self.rest_until(interval.until);
+            return Some(());
+        }
         let mut length = self.next.min(self.longest);
         let mut refused = false;
         loop {
@@ -405,10 +468,9 @@ impl Walk for Body {
     }
 
     fn at(&mut self, interval: &Interval, t: f64) -> State {
-        let gyroscopic = interval.load.gyroscopic();
         let body = interval.inertial.get(self.lane);
         if t >= self.reached {
-            return state(gyroscopic, &body, &self.y).0;
+            return state(self.spin, &body, &self.y).0;
         }
         let dense = self.dense.unwrap_or_else(|| self.dense(interval));
         self.dense = Some(dense);
@@ -421,7 +483,7 @@ impl Walk for Body {
         }
         let y = along(&self.y0, 1.0, &y);
         let y = Factors::at(interval, t - self.from).on(y);
-        state(gyroscopic, &body, &y).0
+        state(self.spin, &body, &y).0
     }
 
     fn work(&self) -> Work {
@@ -430,21 +492,24 @@ impl Walk for Body {
 }
 
 /// The state that y says and, where it is what the motion is computed from, ω in principal axes.
-fn state(gyroscopic: bool, body: &Inertial, y: &Vector) -> (State, Option<Vector3<f64>>) {
+fn state(spin: Spin, body: &Inertial, y: &Vector) -> (State, Option<Vector3<f64>>) {
     let q = Quaternion::from(y[ATTITUDE]);
-    let spin_w = spatial(y[SPIN]);
     let state = State {
         x_w: spatial(y[PLACE]),
         v_w: spatial(y[VELOCITY]),
         q_wp: q * (1.0 / q.norm()),
-        omega_w: spin_w,
+        omega_w: spatial(y[SPIN]),
     };
-    if !gyroscopic {
-        return (state, None);
-    }
-    // Divided, not times 1/I: a rounding of 1/I would be the same at every step, a phase that grows.
-    let turning = |l: f64, i: f64| if i == 0.0 { 0.0 } else { l / i };
-    let omega_p = state.to_principal(spin_w).zip_map(&body.moments, turning);
+    let omega_p = match spin {
+        Spin::Velocity => return (state, None),
+        Spin::Principal => state.omega_w,
+        Spin::Momentum => {
+            // Divided, not times 1/I: a rounding of 1/I would be the same at every step, a phase that grows.
+            let turning = |l: f64, i: f64| if i == 0.0 { 0.0 } else { l / i };
+            let momentum_p = state.to_principal(state.omega_w);
+            momentum_p.zip_map(&body.moments, turning)
+        }
+    };
     let omega_w = state.to_world(omega_p);
     (State { omega_w, ..state }, Some(omega_p))
 }

@@ -1,5 +1,7 @@
 use super::*;
-use crate::integrator::tests::{angle, block, gyroscopic, slope, spinning};
+use crate::integrator::tests::{
+    angle, block, damped, gyroscopic, interval, slope, spinning, steps,
+};
 use nalgebra::UnitQuaternion;
 
 fn of(row: Row, value: impl Fn(usize) -> f64) -> f64 {
@@ -71,4 +73,44 @@ fn the_step_is_of_order_8_and_instants_within_it_of_order_7() {
     assert!((end - 8.0).abs() < 0.3, "{end}: {ends:?}");
     // Of order 7 locally at least: 8, with the step's global 8.
     assert!(within > 7.5, "{within}: {withins:?}");
+}
+
+#[test]
+fn a_rod_takes_no_more_steps_than_another_body() {
+    // With L for a variable its equations swing at |L|/I_min, and a rod of 1e-3 takes ten times as many.
+    let taken = |moments: Vector3<f64>| {
+        let omega = Vector3::new(1.5, 0.8, -0.6);
+        let (inertial, state) = block(moments, spinning(UnitQuaternion::identity(), omega));
+        let mut interval = interval(&gyroscopic(), inertial, 10.0);
+        interval.tolerance = 1e-12;
+        let mut stepper = Dop853.start(interval, 0.0, &state);
+        stepper.advance(&steps(10.0, 10), &mut Vec::new());
+        stepper.work().steps
+    };
+    let usual = taken(Vector3::new(1.0, 2.0, 2.5));
+    for thin in [1e-3, 1e-6, 1e-12] {
+        let rod = taken(Vector3::new(thin, 1.0, 1.0 + 0.5 * thin));
+        assert!(rod < 2 * usual, "{thin:e}: {rod}, {usual}");
+    }
+}
+
+#[test]
+fn what_damping_has_brought_to_rest_takes_one_step() {
+    let mut load = damped(1e5);
+    load.set_gyroscopic();
+    let omega = Vector3::new(1.5, 0.8, -0.6);
+    let (inertial, state) = block(
+        Vector3::new(1.0, 2.0, 2.5),
+        spinning(UnitQuaternion::identity(), omega),
+    );
+    let mut stepper = Dop853.start(interval(&load, inertial, 10.0), 0.0, &state);
+    let mut kept = Vec::new();
+    let mut all = steps(10.0, 10);
+    all.iter_mut().for_each(|step| step.keep = true);
+    stepper.advance(&all, &mut kept);
+    // Some 30 steps until e^{-ct} is 0, and not c t / 30.
+    assert!(stepper.work().steps < 200, "{}", stepper.work().steps);
+    let end = stepper.state().get(0);
+    assert!(end.omega_w.norm() == 0.0 && end.is_finite());
+    assert!(kept.iter().all(|block| block.get(0) == end));
 }

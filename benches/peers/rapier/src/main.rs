@@ -1,11 +1,18 @@
 //! Free bodies in Rapier, as it steps by default: four substeps, the gyroscopic term on. Prints ns of
 //! processor time a body-step: of one body, and of ten thousand.
+//!
+//! `rapier-peer cases` reads hard cases from its input (../hard_cases.py writes them) and prints how each ends.
+
+mod cases;
 
 use cpu_time::ThreadTime;
 use rapier3d_f64::prelude::*;
 use std::hint::black_box;
 
 fn main() {
+    if std::env::args().nth(1).as_deref() == Some("cases") {
+        return cases::run();
+    }
     println!(
         "{{\"one\": {}, \"many\": {}}}",
         time(1, 1_000),
