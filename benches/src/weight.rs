@@ -1,38 +1,42 @@
-//! What a step of one body costs by each method, in steps of rk4: what `Cost::weight` declares.
+//! What a step of one body costs by each method, in steps of rk4: what `Cost::weight` declares. Of a body that a
+//! torque turns, where a method takes one: a free one goes in closed form wherever the program may choose.
 
 use crate::bodies::steps;
 use crate::measure::{Timing, contestant, race};
 use crate::problems::{Problem, T, free, top};
 use crate::report::Report;
-use torquescope::integrator::{Kind, METHODS, Method, Step, Work};
+use torquescope::integrator::{Interval, Kind, METHODS, Method, Step, find};
 
 const STEPS: usize = 4_096;
 
 pub fn weights(report: &mut Report, repeats: usize) {
-    let all: Vec<&dyn Method> = METHODS.to_vec();
-    let on_free = measured(&all, &free(), repeats);
-    // Methods that are exact on a free body take no steps there.
-    let exact = |k: usize| all[k].info().kind == Kind::Fixed && on_free[k].1.evaluations == 0;
-    let (kicked, stepped): (Vec<_>, Vec<_>) = (0..all.len()).partition(|&k| exact(k));
-    let rk4 = all
-        .iter()
-        .position(|m| m.info().name == "rk4")
-        .expect("rk4");
+    let (top, free) = (top(), free());
+    let takes = |method: &&dyn Method| {
+        let Interval { load, inertial, .. } = &top.interval;
+        method.info().refuses(load, inertial).is_none()
+    };
+    let (on_top, on_free): (Vec<&dyn Method>, Vec<&dyn Method>) =
+        METHODS.iter().copied().partition(takes);
     report.section(
         "weights",
-        "a step of one free body; of an adaptive method one of its own steps, to 1e-12; of a closed form an instant",
+        "a step of a heavy top; of an adaptive method one of its own steps, to 1e-12",
     );
-    for k in stepped {
-        row(report, all[k], on_free[k].0, on_free[rk4].0);
-    }
-    let tops: Vec<&dyn Method> = [rk4].into_iter().chain(kicked).map(|k| all[k]).collect();
-    let on_top = measured(&tops, &top(), repeats);
+    rows(report, on_top, &top, repeats);
     report.section(
-        "weights of kicks",
-        "a step of a heavy top, for methods that are exact on a free body",
+        "weights of what takes no torque",
+        "a step of one free body; of a closed form an instant",
     );
-    for (method, (time, _)) in tops.iter().zip(&on_top) {
-        row(report, *method, *time, on_top[0].0);
+    rows(report, on_free, &free, repeats);
+}
+
+/// Each in steps of rk4, which goes along.
+fn rows(report: &mut Report, methods: Vec<&dyn Method>, problem: &Problem, repeats: usize) {
+    let rk4 = find("rk4").expect("rk4");
+    let others = methods.into_iter().filter(|m| m.info().name != "rk4");
+    let methods: Vec<&dyn Method> = [rk4].into_iter().chain(others).collect();
+    let times = measured(&methods, problem, repeats);
+    for (method, time) in methods.iter().zip(&times) {
+        row(report, *method, *time, times[0]);
     }
 }
 
@@ -46,8 +50,8 @@ fn row(report: &mut Report, method: &dyn Method, time: Timing, rk4: Timing) {
     report.time(info.name, time, "ns/step", note);
 }
 
-/// Time of a step, and what was done.
-fn measured(methods: &[&dyn Method], problem: &Problem, repeats: usize) -> Vec<(Timing, Work)> {
+/// Time of a step.
+fn measured(methods: &[&dyn Method], problem: &Problem, repeats: usize) -> Vec<Timing> {
     let mut interval = problem.interval.clone();
     interval.tolerance = 1e-12;
     let mut works = Vec::new();
@@ -75,6 +79,6 @@ fn measured(methods: &[&dyn Method], problem: &Problem, repeats: usize) -> Vec<(
     }
     let times = race(&mut contestants, repeats).into_iter().zip(works);
     times
-        .map(|(time, work)| (time.per(work.steps as usize), work))
+        .map(|(time, work)| time.per(work.steps as usize))
         .collect()
 }

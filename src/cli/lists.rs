@@ -78,7 +78,7 @@ pub fn methods(arguments: &MethodArguments) -> anyhow::Result<()> {
     let header = [0, 2, 3, 4, 5, 7].map(|k| header[k]);
     list(&arguments.list, &header, narrow.collect())?;
     print::out(
-        "cost: of a step of one free body, in steps of rk4. Damping, other names and citations: \
+        "cost: of a step of one heavy top, in steps of rk4. Damping, other names and citations: \
          docs/methods.md, or --json. What they cost on your scene: torquescope cost SCENE",
     )
 }
@@ -92,8 +92,9 @@ fn methods_page() -> String {
         Orders are those of the attitude at a fixed time, for smooth torques of the kinds accepted; a \
         test measures each on a free, a damped and a driven body. A torque that would cost a method \
         its order is refused. Nothing an event does falls inside a step. *Cost* is the time of a step \
-        of one free body in steps of rk4, as the benchmark measured it: the program's choice counts \
-        by it, so that a plan does not depend on a clock.\n\n\
+        of one heavy top in steps of rk4 (of a free body where a method takes no torque), as the \
+        benchmark measured it: the program's choice counts by it, so that a plan does not depend on a \
+        clock.\n\n\
         | method | order | steps | torques | preserves | reversible | evaluations a step | cost |\n\
         |---|--:|---|---|---|---|--:|--:|\n"
         .to_owned();

@@ -66,7 +66,7 @@ pub const BUSS: Buss = Buss {
         preserves: "L of a free body, |q| by construction",
         cost: Cost {
             evaluations: Some(2),
-            weight: 1.05,
+            weight: 1.35,
         },
         citation: "Buss, Accurate and efficient simulation of rigid-body rotations, J. Comput. Phys. 164 (2000); torques at both ends: Heun; damping: Cox & Matthews 2002",
     },
@@ -83,7 +83,7 @@ pub const BUSS3: Buss = Buss {
         damping: Damping::Exact("a free body at its slower time"),
         cost: Cost {
             evaluations: Some(1),
-            weight: 1.25,
+            weight: 2.1,
         },
         citation: "Buss, J. Comput. Phys. 164 (2000), with the term of Magnus' expansion that it leaves out: Hairer, Lubich & Wanner, Geometric Numerical Integration, IV.7",
         ..*BUSS.info

@@ -42,7 +42,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "|q| by construction; rotation at constant ω exactly",
     cost: Cost {
         evaluations: Some(4),
-        weight: 6.0,
+        weight: 2.4,
     },
     citation: "Celledoni, Marthinsen & Owren, Commutator-free Lie group methods, FGCS 19 (2003), order 4 on the classical method; damping: Lawson 1967",
 };

@@ -39,7 +39,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "everything a free body keeps, to rounding, at any time",
     cost: Cost {
         evaluations: Some(0),
-        weight: 2.3,
+        weight: 2.7,
     },
     citation: "van Zon & Schofield, J. Comput. Phys. 225 (2007); Celledoni, Fassò, Säfström & Zanna, SIAM J. Sci. Comput. 30 (2008)",
 };

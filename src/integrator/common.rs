@@ -61,6 +61,18 @@ pub struct Acceleration {
 /// loop that has never heard of forces.
 pub trait Forces: Copy {
     fn acceleration(self, lane: usize, body: &Inertial, s: &State) -> Acceleration;
+
+    /// What is applied alone: `m⁻¹ F`, world, m/s², and `I⁻¹ τ`, principal axes, rad/s², where `to_principal`
+    /// takes a vector there from the world. Both are +0 on a lane on which nothing acts, whatever else does.
+    fn applied(
+        self,
+        lane: usize,
+        body: &Inertial,
+        to_principal: impl Fn(Vector3<f64>) -> Vector3<f64>,
+    ) -> (Vector3<f64>, Vector3<f64>);
+
+    /// Whether the gyroscopic term is in the model.
+    const GYROSCOPIC: bool;
 }
 
 /// Nothing is applied. `GYROSCOPIC`: angular momentum stays, else angular velocity.
@@ -72,6 +84,18 @@ pub struct Coasting<const GYROSCOPIC: bool>;
 pub struct Applied<'w, const GYROSCOPIC: bool>(pub &'w WrenchBlock);
 
 impl<const GYROSCOPIC: bool> Forces for Coasting<GYROSCOPIC> {
+    const GYROSCOPIC: bool = GYROSCOPIC;
+
+    #[inline(always)]
+    fn applied(
+        self,
+        _: usize,
+        _: &Inertial,
+        _: impl Fn(Vector3<f64>) -> Vector3<f64>,
+    ) -> (Vector3<f64>, Vector3<f64>) {
+        (Vector3::zeros(), Vector3::zeros())
+    }
+
     #[inline(always)]
     fn acceleration(self, _: usize, body: &Inertial, s: &State) -> Acceleration {
         Acceleration {
@@ -85,6 +109,24 @@ impl<const GYROSCOPIC: bool> Forces for Coasting<GYROSCOPIC> {
 }
 
 impl<const GYROSCOPIC: bool> Forces for Applied<'_, GYROSCOPIC> {
+    const GYROSCOPIC: bool = GYROSCOPIC;
+
+    #[inline(always)]
+    fn applied(
+        self,
+        lane: usize,
+        body: &Inertial,
+        to_principal: impl Fn(Vector3<f64>) -> Vector3<f64>,
+    ) -> (Vector3<f64>, Vector3<f64>) {
+        let wrench = self.0.get(lane);
+        let tau_p = to_principal(wrench.tau_w);
+        // + 0 makes +0 of -0, as which a rotated 0 may come.
+        (
+            wrench.force_w * body.inv_mass,
+            body.inv_moments.component_mul(&tau_p).add_scalar(0.0),
+        )
+    }
+
     #[inline(always)]
     fn acceleration(self, lane: usize, body: &Inertial, s: &State) -> Acceleration {
         let wrench = self.0.get(lane);

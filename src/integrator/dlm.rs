@@ -43,7 +43,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "angular momentum to rounding; symplectic: energy stays within bounds",
     cost: Cost {
         evaluations: Some(1),
-        weight: 1.45,
+        weight: 0.67,
     },
     citation: "Dullweber, Leimkuhler & McLachlan, J. Chem. Phys. 107 (1997) 5840",
 };

@@ -32,7 +32,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "nothing; an oscillation's energy grows by 1 + (hΩ)² a step (kept to show it)",
     cost: Cost {
         evaluations: Some(1),
-        weight: 0.3,
+        weight: 0.24,
     },
     citation: "Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, I.7",
 };

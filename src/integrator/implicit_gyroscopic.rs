@@ -49,7 +49,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "nothing; a free body loses energy and momentum",
     cost: Cost {
         evaluations: Some(1),
-        weight: 1.4,
+        weight: 0.58,
     },
     citation: "Catto, Numerical Methods, GDC 2015; Bullet 3.25, computeGyroscopicImpulseImplicit_Body in btRigidBody.cpp",
 };

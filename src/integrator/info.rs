@@ -81,9 +81,9 @@ pub enum Damping {
 pub struct Cost {
     /// Evaluations of the equations of motion a step, 0 of a closed form; `None` where they vary.
     pub evaluations: Option<u32>,
-    /// Time of a step of one free body alone, in units of a step of rk4, as the benchmark
-    /// measured it; of an evaluation at one instant for a closed form. Methods that are exact on a
-    /// free body take no steps there: theirs is of a top under gravity, rk4's too.
+    /// Time of a step of one body alone, in units of a step of rk4, as the benchmark measured it: of a top
+    /// under gravity; of a free body for methods that take no torque, and of an evaluation at one instant for
+    /// a closed form, rk4's being of a free body too.
     pub weight: f64,
 }
 

@@ -39,7 +39,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "|q| by construction; rotation at constant ω exactly",
     cost: Cost {
         evaluations: Some(2),
-        weight: 0.96,
+        weight: 0.53,
     },
     citation: "Hairer, Lubich & Wanner, Geometric Numerical Integration, IV.8; damping: Lawson 1967",
 };

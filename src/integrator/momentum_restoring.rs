@@ -67,7 +67,7 @@ const RAPIER: MethodInfo = MethodInfo {
     preserves: "|L| of a free body in its own gyroscopic step, not L's direction",
     cost: Cost {
         evaluations: Some(1),
-        weight: 3.5,
+        weight: 1.25,
     },
     citation: "Rapier 0.36.1, gyroscopic_corrected_angvel in rigid_body.rs; 4 substeps as by default",
 };
@@ -77,7 +77,7 @@ const JOLT: MethodInfo = MethodInfo {
     engines: &["jolt"],
     cost: Cost {
         evaluations: Some(1),
-        weight: 1.5,
+        weight: 0.62,
     },
     damping: Damping::Engine("max(0, 1 - c h) before the pose: order 1"),
     citation: "Jolt 5.5, ApplyGyroscopicForceInternal in MotionProperties.inl (off there by default)",

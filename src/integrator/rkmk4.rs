@@ -45,7 +45,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "|q| by construction; energy and momentum drift as h⁴",
     cost: Cost {
         evaluations: Some(4),
-        weight: 7.9,
+        weight: 3.0,
     },
     citation: "Munthe-Kaas, Appl. Numer. Math. 29 (1999); MuJoCo 4.0, mj_RungeKutta in engine_forward.c",
 };

@@ -33,7 +33,7 @@ const INFO: MethodInfo = MethodInfo {
     preserves: "angular velocity where no torque acts and the gyroscopic term is absent",
     cost: Cost {
         evaluations: Some(1),
-        weight: 0.36,
+        weight: 0.25,
     },
     citation: "the tutorial; symplectic Euler: Hairer, Lubich & Wanner, Geometric Numerical Integration, I.1.2",
 };

@@ -621,6 +621,96 @@ fn a_block_gives_every_body_the_bits_it_would_have_alone() {
     }
 }
 
+/// A free body, one under a torque that stays, one under a torque that turns with it; the states of each of
+/// the first two, with the second's and the third's torque as asked, kept every so many steps.
+fn three_side_by_side(
+    method: &dyn Method,
+    mut load: Load,
+    torques: usize,
+    every: usize,
+) -> [Vec<State>; 2] {
+    let (mut inertial, mut states) = (InertialBlock::default(), StateBlock::default());
+    // Zeros of both signs, and what is not about an axis.
+    let omega = [
+        Vector3::new(-0.0, 2.0, 0.0),
+        Vector3::new(0.9, -3.0, 2.1),
+        Vector3::new(0.1, 1.0, -0.2),
+    ];
+    for (lane, omega) in omega.into_iter().enumerate() {
+        let start = State {
+            v_w: Vector3::new(-0.0, 0.5, 0.0),
+            ..spinning(UnitQuaternion::identity(), omega)
+        };
+        let one = block(Vector3::new(0.5, 0.8, 1.1), start);
+        inertial.set(lane, one.0.get(0));
+        states.set(lane, one.1.get(0));
+    }
+    let torque = Vector3::new(0.3, -0.1, 0.2);
+    let acting = [Frame::World(torque), Frame::Principal(torque)];
+    for (k, torque) in acting.into_iter().take(torques).enumerate() {
+        let lane = k + 1;
+        load.push(Arc::new(Couple { lane, torque }));
+    }
+    let interval = Interval {
+        bodies: 3,
+        ..interval(&load, inertial, 1.0)
+    };
+    let mut steps = steps(1.0, 160);
+    for (k, step) in steps.iter_mut().enumerate() {
+        step.keep = (k + 1) % every == 0;
+    }
+    let mut kept = Vec::new();
+    method
+        .start(interval, 0.0, &states)
+        .advance(&steps, &mut kept);
+    let sixteenth = kept.iter().skip(16 / every - 1).step_by(16 / every);
+    let states = |lane| sixteenth.clone().map(move |at: &StateBlock| at.get(lane));
+    [0, 1].map(|lane| states(lane).collect())
+}
+
+/// Each of the two bodies as `see` sees it must be the same in all company and however often kept.
+#[track_caller]
+fn goes_as_alone<T: PartialEq + std::fmt::Debug>(
+    method: &dyn Method,
+    load: &Load,
+    see: impl Fn(&State) -> T,
+) {
+    let run = |torques, every| {
+        let states = three_side_by_side(method, load.clone(), torques, every);
+        states.map(|states| states.iter().map(&see).collect::<Vec<T>>())
+    };
+    let [free, _] = run(0, 1);
+    let [_, pushed] = run(1, 1);
+    assert_eq!(free.len(), 10);
+    for every in [1, 16] {
+        let name = method.info().name;
+        assert_eq!(run(0, every)[0], free, "{name}");
+        for torques in [1, 2] {
+            let [beside, own] = run(torques, every);
+            assert_eq!(beside, free, "{name}, {torques} torques");
+            assert_eq!(own, pushed, "{name}, {torques} torques");
+        }
+    }
+}
+
+#[test]
+fn a_body_goes_its_way_whatever_acts_beside_it_and_however_often_it_is_kept() {
+    let mut seen = 0;
+    for load in [gyroscopic(), Load::default()] {
+        let mut all = load.clone();
+        let torque = Frame::Principal(Vector3::x());
+        all.push(Arc::new(Couple { lane: 0, torque }));
+        let bodies = (InertialBlock::default(), StateBlock::default());
+        for method in fixed_methods(&all, &bodies) {
+            goes_as_alone(method, &load, |state| *state);
+            seen += 1;
+        }
+        // One of two ways through a step, by what acts in the block: the signs of zeros are the same too.
+        goes_as_alone(find("rk4").unwrap(), &load, |state| state.hash_into(0));
+    }
+    assert!(seen > 12);
+}
+
 /// A spring to the origin, N/m per kg.
 #[derive(Debug)]
 struct Spring(f64);

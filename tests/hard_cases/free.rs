@@ -217,7 +217,7 @@ pub fn separatrix() -> Group {
                 vec![
                     cell(&["lie-midpoint", "buss"], Must::Degrade(1.0, 3.2), FLIPS),
                     cell(&["buss3"], Must::Degrade(0.1, 1.0), FLIPS),
-                    cell(&["cf4", "rk4"], Must::Degrade(5e-5, 1e-3), FLIPS),
+                    cell(&["cf4"], Must::Degrade(5e-5, 1e-3), FLIPS),
                     cell(ADAPTIVE, Must::Degrade(1e-11, 1e-5), FLIPS),
                     cell(&["dmv8", "dmv10"], Must::Degrade(1e-9, 1e-7), FLIPS),
                 ],

@@ -26,11 +26,11 @@ use nalgebra::Quaternion;
 pub struct Dmv(&'static MethodInfo);
 
 const INFO: [MethodInfo; 5] = [
-    info("dmv2", 2, 0.91),
-    info("dmv4", 4, 1.0),
-    info("dmv6", 6, 1.05),
-    info("dmv8", 8, 1.05),
-    info("dmv10", 10, 1.1),
+    info("dmv2", 2, 1.55),
+    info("dmv4", 4, 1.75),
+    info("dmv6", 6, 1.8),
+    info("dmv8", 8, 1.8),
+    info("dmv10", 10, 1.9),
 ];
 
 pub const DMV2: Dmv = Dmv(&INFO[0]);

@@ -58,7 +58,7 @@ const INFO: MethodInfo = MethodInfo {
     cost: Cost {
         evaluations: None,
         // A step of its own, tolerance 1e-12.
-        weight: 8.8,
+        weight: 3.4,
     },
     citation: "Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, II.5 and II.6 (DOP853); damping: Lawson 1967",
 };

@@ -56,7 +56,7 @@ const INFO: MethodInfo = MethodInfo {
     cost: Cost {
         evaluations: None,
         // A step of its own, tolerance 1e-12: order 15.
-        weight: 3.9,
+        weight: 1.5,
     },
     citation: "Jorba & Zou, Experimental Mathematics 14 (2005); Biscani & Izzo, MNRAS 504 (2021)",
 };
