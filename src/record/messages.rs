@@ -220,9 +220,11 @@ impl Messages {
         let mut last = Vec::new();
         let room = StreamFooter::ENCODED_SIZE_BYTES as u64;
         let read = (&mut self.file).take(room).read_to_end(&mut last);
-        // It counts its parts, and does not look whether they are there.
-        let known = quietly(|| StreamFooter::from_rrd_bytes(&last));
-        let known = known.ok().and_then(Result::ok).filter(|_| read.is_ok());
+        // It says how many parts it has, and any number would be believed: there is one.
+        let is_one = read.is_ok() && last.ends_with(&1_u32.to_le_bytes());
+        let known = is_one
+            .then(|| StreamFooter::from_rrd_bytes(&last).ok())
+            .flatten();
         // Rerun before 0.28 wrote an end without one.
         let bare = last.is_empty() && self.frame.len() == MessageHeader::ENCODED_SIZE_BYTES;
         self.ended = known.is_some() || bare;
