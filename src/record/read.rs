@@ -263,7 +263,7 @@ pub fn read(path: &Path) -> Result<Made, ReadError> {
 }
 
 /// A file that was closed whole ends with the marks of its footer.
-fn lacks_footer(path: &Path) -> Option<String> {
+pub(super) fn lacks_footer(path: &Path) -> Option<String> {
     const MARKS: &[u8; 8] = b"RRF2FOOT";
     let mut end = [0; MARKS.len()];
     let read = File::open(path).and_then(|mut file| {
