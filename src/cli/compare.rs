@@ -204,9 +204,9 @@ fn runs(arguments: &Arguments, failed: &mut Vec<String>) -> anyhow::Result<Vec<R
             let scenes = script.scenes().map_err(SceneError::Wrong)?;
             for scene in &scenes {
                 let label = match (method, &scene.variant) {
+                    (Some(method), _) if scenes.len() == 1 => format!("{file}, {method}"),
                     (_, Some(variant)) => format!("{file}, {variant}"),
-                    (Some(method), None) => format!("{file}, {method}"),
-                    (None, None) => file.clone(),
+                    (_, None) => file.clone(),
                 };
                 runs.push(simulated(scene, label, failed)?);
             }
@@ -258,12 +258,16 @@ fn seconds(nanoseconds: i64) -> f64 {
 }
 
 impl Comparison<'_> {
+    fn all(&self) -> impl Iterator<Item = (&Apart, &Measure)> {
+        let measures = |apart| {
+            let apart: &Apart = apart;
+            apart.quantities.iter().map(move |m| (apart, m))
+        };
+        self.apart.iter().flat_map(measures)
+    }
+
     fn above(&self) -> impl Iterator<Item = (&Apart, &Measure)> {
-        let all = self
-            .apart
-            .iter()
-            .flat_map(|apart| apart.quantities.iter().map(move |m| (apart, m)));
-        all.filter(|(_, measure)| measure.first.is_some())
+        self.all().filter(|(_, measure)| measure.first.is_some())
     }
 
     /// How it was compared, aloud.
@@ -355,15 +359,40 @@ impl Comparison<'_> {
             "at (s)",
             "first above tolerance (s)",
         ];
-        let mut rows = Vec::new();
-        for apart in self.apart {
-            rows.extend(apart.quantities.iter().map(|m| row(apart, m)));
+        let rows: Vec<_> = self.differing().map(|(apart, m)| row(apart, m)).collect();
+        let mut text = self.remarks().join("\n");
+        if !rows.is_empty() {
+            text += &format!("\n{}", print::table(&header, rows));
         }
-        format!(
-            "{}\n{}",
-            self.remarks().join("\n"),
-            print::table(&header, rows)
-        )
+        let same = self.same();
+        if !same.is_empty() {
+            text += &format!("\n{}", same.join("\n"));
+        }
+        text
+    }
+
+    fn differing(&self) -> impl Iterator<Item = (&Apart, &Measure)> {
+        self.all().filter(|(_, measure)| measure.largest > 0.0)
+    }
+
+    /// What is the same, pair by pair.
+    fn same(&self) -> Vec<String> {
+        let of = |apart: &Apart| {
+            let (same, rest): (Vec<&Measure>, Vec<&Measure>) = apart
+                .quantities
+                .iter()
+                .partition(|measure| measure.largest == 0.0);
+            let who = format!("{} of A and {}", apart.pair.a, letter(apart.run));
+            match (same.is_empty(), rest.is_empty()) {
+                (true, _) => None,
+                (_, true) => Some(format!("no difference at all: {who}")),
+                (false, false) => {
+                    let names: Vec<&str> = same.iter().map(|m| m.name.as_str()).collect();
+                    Some(format!("no difference in {}: {who}", names.join(", ")))
+                }
+            }
+        };
+        self.apart.iter().filter_map(of).collect()
     }
 
     /// For the recording.
@@ -377,12 +406,14 @@ impl Comparison<'_> {
                 .join("\n")
         );
         text += "| body | run | quantity | largest difference | of its scale | at (s) | first above tolerance (s) |\n|---|---|---|--:|--:|--:|--:|\n";
-        for apart in self.apart {
-            for measure in &apart.quantities {
-                text += &format!("| {} |\n", row(apart, measure).join(" | "));
-            }
+        for (apart, measure) in self.differing() {
+            text += &format!("| {} |\n", row(apart, measure).join(" | "));
         }
-        text
+        text + &self
+            .same()
+            .iter()
+            .map(|line| format!("\n- {line}"))
+            .collect::<String>()
     }
 
     fn verdict(&self, failed: &[String]) -> anyhow::Result<()> {

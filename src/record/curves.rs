@@ -69,15 +69,20 @@ fn draw<B: DrawingBackend>(
         .draw()
         .map_err(words)?;
     for (k, curve) in curves.iter().enumerate() {
-        let line = LineSeries::new(thinned(&curve.points), style(k));
+        let line = LineSeries::new(thinned(&curve.points), style(curves, k));
         chart.draw_series(line).map_err(words)?;
     }
     draw_legend(curves, &legend).map_err(words)?;
     area.present().map_err(words)
 }
 
-fn style(k: usize) -> ShapeStyle {
-    COLOURS[k % COLOURS.len()].stroke_width(2)
+/// Lines that stand on others are told apart by colour; what lies under them is wide and pale.
+fn style(curves: &[Curve], k: usize) -> ShapeStyle {
+    let under = curves[..k].iter().filter(|curve| curve.under).count();
+    match curves[k].under {
+        true => RGBColor(190, 190, 190).stroke_width(6),
+        false => COLOURS[(k - under) % COLOURS.len()].stroke_width(2),
+    }
 }
 
 fn draw_legend<B: DrawingBackend>(
@@ -91,7 +96,7 @@ fn draw_legend<B: DrawingBackend>(
         let name = match k + 1 == most && curves.len() > most {
             true => format!("and {} more", curves.len() - k),
             false => {
-                area.draw(&PathElement::new([(2, y), (28, y)], style(k)))?;
+                area.draw(&PathElement::new([(2, y), (28, y)], style(curves, k)))?;
                 curve.name.clone()
             }
         };

@@ -362,8 +362,9 @@ impl Ghosts<'_> {
             .take(LINES);
         let lines = with.enumerate().map(|(k, apart)| {
             let name = self.name(apart.run, &apart.pair.b);
-            let colour = match self.runs.len() {
-                2 => look::SOURCES[k % look::SOURCES.len()],
+            // Of two runs all lines are about the second: bodies are told apart, by what is no run's tint here.
+            let colour = match (self.runs.len(), self.apart.len()) {
+                (2, 2..) => tint(2 + k % (TINTS.len() - 2)),
                 _ => tint(apart.run),
             };
             (format!("/difference/{name}"), line(&name, colour, ATTITUDE))
@@ -383,14 +384,17 @@ impl Ghosts<'_> {
         quantity: &'static str,
     ) -> Result<Option<Part>, RecordError> {
         let runs = self.runs.iter().enumerate();
-        let all =
-            runs.flat_map(|(k, run)| run.bodies().into_iter().map(move |body| (k, run, body)));
+        let all = runs.flat_map(|(k, run)| {
+            let bodies = run.bodies().into_iter().enumerate();
+            bodies.map(move |(place, body)| (k, run, place, body))
+        });
         let with = all
-            .filter(|(_, run, body)| run.series(body, quantity).is_some())
+            .filter(|(_, run, _, body)| run.series(body, quantity).is_some())
             .take(LINES);
-        let lines = with.map(|(k, _, body)| {
+        let lines = with.map(|(k, _, place, body)| {
             let name = self.name(k, body);
-            (format!("/numbers/{name}"), line(&name, tint(k), quantity))
+            let colour = look::lightened(tint(k), 0.3 * (place % 3) as f32);
+            (format!("/numbers/{name}"), line(&name, colour, quantity))
         });
         time_series(blueprint, title, lines.collect())
     }

@@ -202,6 +202,8 @@ fn stretches_of(series: &Series, condition: &Condition) -> Vec<Stretch> {
 #[derive(Clone, Debug)]
 pub struct Curve {
     pub name: String,
+    /// Drawn wide and pale, under the others: of components the size.
+    pub under: bool,
     pub points: Vec<(f64, f64)>,
 }
 
@@ -220,9 +222,8 @@ pub fn curves(
     let parts: Vec<Part> = match (own.as_slice(), chosen.part) {
         ([_], Part::Size) if chosen.term.shape != Shape::Matrix => {
             let components = 0..chosen.term.shape.components().len();
-            components
-                .map(Part::Component)
-                .chain([Part::Size])
+            std::iter::once(Part::Size)
+                .chain(components.map(Part::Component))
                 .collect()
         }
         _ => vec![chosen.part],
@@ -239,6 +240,7 @@ pub fn curves(
                 .collect::<Vec<_>>()
         });
         Curve {
+            under: part == Part::Size && parts.len() > 1,
             name: match own.len() {
                 1 => line.to_string(),
                 _ => series.body.clone(),
