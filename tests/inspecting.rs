@@ -323,6 +323,8 @@ fn foreign(path: &Path) {
             .log("world/other.one", &rerun::Transform3D::from_rotation(axis))
             .unwrap();
     }
+    let fixed = rerun::Transform3D::from_translation([1.0, 2.0, 3.0]);
+    stream.log_static("world/fixed", &fixed).unwrap();
     stream.flush_blocking().unwrap();
 }
 
@@ -612,6 +614,11 @@ fn another_programs_recording_against_a_scene() {
         let part = measure(&report, quantity)["part"].as_f64().unwrap();
         assert!(part < 1e-6, "{quantity}: {part}");
     }
+    // With itself, what never moves included.
+    let itself = ["compare", "f.rrd", "f.rrd", "--tolerance", "0"];
+    let (code, said, wrong) = torquescope(folder.path(), &itself);
+    assert_eq!((code, wrong.as_str()), (0, ""));
+    assert_eq!(said.matches("no difference at all").count(), 3, "{said}");
     assert!(
         pair["not_compared"]
             .as_array()

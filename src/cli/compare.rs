@@ -339,7 +339,7 @@ impl Comparison<'_> {
                 if !alone.is_empty() {
                     let other = letter(if is_a { k } else { 0 });
                     lines.push(format!(
-                        "only in {}, not in {other}: {}",
+                        "of {} without a partner in {other} at any instant: {}",
                         letter(run),
                         alone.join(", ")
                     ));
@@ -432,7 +432,7 @@ impl Comparison<'_> {
             ));
         }
         if self.judged && !self.unpaired().is_empty() {
-            lines.push("above the tolerance: there are bodies that only one run has".to_owned());
+            lines.push("above the tolerance: there are bodies without a partner".to_owned());
         }
         if !lines.is_empty() {
             return Err(anyhow::anyhow!("{}", lines.join("\n")));

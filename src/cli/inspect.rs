@@ -660,12 +660,21 @@ fn entities(recording: &Recording) -> String {
     text
 }
 
-/// Before and after where an event falls on the instant.
+/// Before and after where an event falls on the instant and changes something.
 fn instant_rows(
     series: &record::Series,
     range: std::ops::Range<usize>,
     when: &str,
 ) -> Vec<Vec<String>> {
+    // What the event left as it was is told once.
+    let same = range
+        .clone()
+        .all(|row| series.row(row) == series.row(range.start));
+    let range = if same {
+        range.start..range.start + 1
+    } else {
+        range
+    };
     let count = range.len();
     let row = |(k, row): (usize, usize)| {
         let which = match (k, count) {

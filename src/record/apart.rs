@@ -211,14 +211,18 @@ impl Pairing {
             _ => Vec::new(),
         };
         let row = |k: usize| {
-            let time = Some(a.times[k]).filter(|&time| time != STATIC)?;
+            let time = a.times[k];
             let repeats = |other: Option<&i64>| other == Some(&time);
             let before = repeats(a.times.get(k + 1));
             let side = match (before, k > 0 && repeats(a.times.get(k - 1))) {
                 (true, _) => Side::Before,
                 (false, _) => Side::After,
             };
-            let (other, exact) = value_at(b, time.checked_sub(shift)?, side)?;
+            let when = match time {
+                STATIC => STATIC,
+                time => time.checked_sub(shift)?,
+            };
+            let (other, exact) = value_at(b, when, side)?;
             let own = a.row(k);
             let (distance, size) = match (name, own, other.as_slice()) {
                 ("orientation", &[x, y, z, w], &[p, q, r, s]) => {
@@ -238,7 +242,8 @@ impl Pairing {
                 distance
             };
             Some(Row {
-                time,
+                // What never moves in both is compared once.
+                time: if time == STATIC { 0 } else { time },
                 distance,
                 size,
                 exact,
