@@ -4,8 +4,10 @@
 //! 2: the command, the scene or the file it names is wrong, and nothing was recorded.
 
 mod check;
+mod compare;
 mod cost;
 mod explain;
+mod inspect;
 mod lists;
 mod mass;
 mod new;
@@ -20,7 +22,7 @@ mod view;
 
 use crate::cost::PlanError;
 use crate::live::page::PageError;
-use crate::record::{ReadError, RecordError};
+use crate::record::{InspectError, ReadError, RecordError};
 use crate::scene::SceneError;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -46,6 +48,8 @@ enum Verb {
     Cost(cost::Arguments),
     View(view::Arguments),
     Recover(recover::Arguments),
+    Inspect(inspect::Arguments),
+    Compare(compare::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
     Scenes(scenes::Arguments),
@@ -69,6 +73,8 @@ pub fn main() -> ExitCode {
         Verb::Cost(arguments) => cost::run(&arguments),
         Verb::View(arguments) => view::run(&arguments),
         Verb::Recover(arguments) => recover::run(&arguments),
+        Verb::Inspect(arguments) => inspect::run(&arguments),
+        Verb::Compare(arguments) => compare::run(&arguments),
         Verb::Check(arguments) => check::run(&arguments),
         Verb::New(arguments) => new::run(&arguments),
         Verb::Scenes(arguments) => scenes::run(&arguments),
@@ -107,6 +113,7 @@ fn code(error: &anyhow::Error) -> u8 {
     let input = error.is::<SceneError>()
         || matches!(error.downcast_ref(), Some(PlanError::BeyondReach { .. }))
         || error.is::<ReadError>()
+        || error.is::<InspectError>()
         || error.is::<Wrong>()
         || error.is::<PageError>();
     if input || nowhere { 2 } else { 1 }

@@ -15,7 +15,7 @@ const SIZE: (u32, u32) = (1100, 760);
 const TYPEFACE: &[u8] = epaint_default_fonts::UBUNTU_LIGHT;
 
 /// Okabe & Ito's colours, told apart by all eyes, with a darker yellow for a white ground.
-const COLOURS: [RGBColor; 8] = [
+pub(crate) const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -68,14 +68,14 @@ pub fn png(cost: &Cost, title: &str, path: &Path) -> Result<(), PlotError> {
     write(path, &bytes)
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<(), PlotError> {
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), PlotError> {
     std::fs::write(path, bytes).map_err(|error| PlotError::Write {
         path: path.display().to_string(),
         why: error.to_string(),
     })
 }
 
-fn fault(path: &Path, why: String) -> PlotError {
+pub(crate) fn fault(path: &Path, why: String) -> PlotError {
     PlotError::Draw {
         path: path.display().to_string(),
         why,
@@ -261,7 +261,7 @@ fn draw_legend<B: DrawingBackend>(
 }
 
 /// Once a process.
-fn register_typeface() {
+pub(crate) fn register_typeface() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         // It is in the program; were it no font, labels would fail with the drawing's own error.

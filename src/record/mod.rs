@@ -5,19 +5,25 @@
 //! `/numbers/NAME`, the same quantities as f64 columns. Pictures hang on the bodies by frames, so
 //! that no pose is stored twice. Static things are written once, everything else by columns.
 
+mod apart;
 mod band;
 mod blueprint;
 mod columns;
 mod compare;
+mod curves;
 mod destination;
+mod export;
 mod frames;
+mod ghosts;
 mod heading;
+mod inspect;
 mod layout;
 mod links;
 mod look;
 mod mesh;
 mod messages;
 mod page;
+mod parquet;
 mod picture;
 mod price;
 mod provenance;
@@ -25,19 +31,30 @@ mod read;
 mod recorder;
 mod recover;
 mod rrd;
+mod runs;
 mod scale;
 mod sources;
+mod survey;
 mod swarm;
+mod table;
 mod viewer;
 
+pub use apart::{Apart, Measure, Pair, Tolerances, apart, pairs};
 pub use compare::{Comparison, Difference, Verdict};
+pub use curves::{PlotText, plot};
 pub use destination::{Destination, partial_name};
+pub use export::Export;
+pub use ghosts::{Ghosts, letter};
 pub use heading::Heading;
+pub use inspect::{Curve, Extremes, Mark, Span, Stretch, asked, curves, extremes, stretches};
 pub use links::links;
 pub use provenance::{Provenance, VERSION};
 pub use read::{Made, ReadError, is_recording, read};
 pub use recorder::{Recorder, Summary};
 pub use recover::{RecoverError, Recovered, recover, recovered_name};
+pub use runs::{Collector, Run};
+pub use survey::{Clock, Entity, InspectError, Recording, STATIC, Survey, TimeUnit, survey};
+pub use table::{Origin, Series, Table, Wanted, vocabulary};
 pub use viewer::{Assets, native_version_line};
 
 /// The version of Rerun whose files this writes and whose viewer it carries.

@@ -3,11 +3,15 @@
 //! Nothing here knows of scenes, methods or recordings. A stepper delivers to a [`Sink`]; so can
 //! any other engine that knows its bodies' poses and torques.
 
+mod condition;
 mod instant;
+mod names;
 mod quantity;
 mod streams;
 
+pub use condition::{Chosen, Condition, ConditionError, Met, Part, TORQUE_BY, Term, Vocabulary};
 pub use instant::{Deviation, Instant, Motion, PointForce, Sample, Subject};
+pub use names::nearest;
 pub use quantity::{Quantity, Shape};
 pub use streams::{STREAMS, Stream, StreamSet};
 

@@ -21,6 +21,16 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// What its numbers are called; of each push's. None where it is one number.
+    pub fn components(self) -> &'static [&'static str] {
+        match self {
+            Self::Scalar | Self::ScalarWhereKnown => &[],
+            Self::Vector | Self::VectorPerPush => &["x", "y", "z"],
+            Self::Quaternion => &["x", "y", "z", "w"],
+            Self::Matrix => &["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"],
+        }
+    }
+
     /// Its name in lists.
     pub fn describe(self) -> &'static str {
         match self {
