@@ -58,7 +58,7 @@ pub fn is_recording(path: &Path) -> bool {
 
 /// The messages of a file, one after another, until it ends or cannot be read.
 pub(super) struct Messages {
-    decoder: Box<dyn Iterator<Item = Result<LogMsg, String>>>,
+    decoder: Box<dyn Iterator<Item = Result<LogMsg, String>> + Send>,
     /// What stopped it.
     pub stopped: Option<String>,
     /// Whether the file's mark of its end comes after the last message.

@@ -12,11 +12,11 @@ use rerun::external::re_log_types::{
 };
 use rerun::log::{Chunk, ChunkId, RowId};
 use rerun::{AsComponents, EntityPath, TimePoint};
-use std::cell::Cell;
 use std::fs::File;
 use std::io::{BufWriter, Read as _, Write};
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What recordings of this program call themselves; blueprints apply to recordings of one name.
 pub const APPLICATION: &str = "torquescope";
@@ -25,7 +25,7 @@ pub const APPLICATION: &str = "torquescope";
 pub struct RrdFile {
     path: PathBuf,
     encoder: Encoder<Counted>,
-    bytes: Rc<Cell<u64>>,
+    bytes: Arc<AtomicU64>,
     recording: StoreId,
     blueprint: StoreId,
     next: u64,
@@ -63,13 +63,13 @@ impl RrdFile {
 
     fn into_writer(
         path: &Path,
-        inner: Box<dyn Write>,
+        inner: Box<dyn Write + Send>,
         recording_id: &str,
     ) -> Result<Self, RecordError> {
-        let bytes = Rc::new(Cell::new(0));
+        let bytes = Arc::new(AtomicU64::new(0));
         let writer = Counted {
             inner,
-            bytes: Rc::clone(&bytes),
+            bytes: Arc::clone(&bytes),
         };
         let options = EncodingOptions::PROTOBUF_COMPRESSED;
         let encoder = Encoder::new_eager(CrateVersion::LOCAL, options, writer);
@@ -194,7 +194,7 @@ impl RrdFile {
             .finish()
             .and_then(|()| self.encoder.flush_blocking());
         done.map_err(|error| self.stopped(&error))?;
-        Ok((self.bytes.get(), self.rows))
+        Ok((self.bytes.load(Ordering::Relaxed), self.rows))
     }
 
     fn stopped(&self, error: &dyn std::fmt::Display) -> RecordError {
@@ -259,14 +259,14 @@ impl RrdFile {
 
 /// Counts the bytes that go through.
 struct Counted {
-    inner: Box<dyn Write>,
-    bytes: Rc<Cell<u64>>,
+    inner: Box<dyn Write + Send>,
+    bytes: Arc<AtomicU64>,
 }
 
 impl Write for Counted {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         let written = self.inner.write(bytes)?;
-        self.bytes.set(self.bytes.get() + written as u64);
+        self.bytes.fetch_add(written as u64, Ordering::Relaxed);
         Ok(written)
     }
 

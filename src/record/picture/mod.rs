@@ -106,12 +106,15 @@ pub const DRAWN: [Drawn; 5] = [
 ];
 
 /// The drawing of one quantity of one body.
-pub trait Picture {
+pub trait Picture: Send {
     /// Writes what does not change.
     fn statics(&self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError>;
 
     /// Adds what is seen at an instant.
     fn row(&mut self, at: Instant, subject: &Subject, sample: &Sample);
+
+    /// How many instants were added.
+    fn rows(&self) -> usize;
 
     /// Writes what was added.
     fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError>;

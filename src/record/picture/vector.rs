@@ -14,6 +14,7 @@ use crate::trace::{Instant, Sample, Subject, brief};
 use nalgebra::Vector3;
 use rerun::archetypes::{Arrows3D, CoordinateFrame, LineStrips3D, Points3D, Transform3D};
 use rerun::components::Radius;
+use std::sync::OnceLock;
 
 /// The ring: its radius and its place along the axis, in lengths of the arrow; its arc.
 const RING_RADIUS: f64 = 0.2;
@@ -22,7 +23,7 @@ const RING_ARC: f64 = 1.75 * std::f64::consts::PI;
 const RING_PIECES: usize = 28;
 
 /// The vector of a body at an instant.
-pub type Value = Box<dyn Fn(&Subject, &Sample) -> Vector3<f64>>;
+pub type Value = Box<dyn Fn(&Subject, &Sample) -> Vector3<f64> + Send>;
 
 /// Which vector, and how it looks.
 pub struct Shown {
@@ -162,6 +163,15 @@ impl VectorPicture {
     }
 }
 
+/// Sine and cosine along the ring.
+fn circle() -> &'static [(f64, f64); RING_PIECES + 1] {
+    static CIRCLE: OnceLock<[(f64, f64); RING_PIECES + 1]> = OnceLock::new();
+    CIRCLE.get_or_init(|| {
+        // The same on every machine, as all that is recorded.
+        std::array::from_fn(|k| libm::sincos(RING_ARC * k as f64 / RING_PIECES as f64))
+    })
+}
+
 impl Turns {
     /// A ring about `axis`, ending in an arrowhead.
     fn push(&mut self, axis: Vector3<f64>) {
@@ -175,9 +185,9 @@ impl Turns {
         let v = n.cross(&u);
         let centre = axis * RING_PLACE;
         let radius = RING_RADIUS * length;
+        let circle = circle();
         let at = |k: usize| {
-            // The same on every machine, as all that is recorded.
-            let (sin, cos) = libm::sincos(RING_ARC * k as f64 / RING_PIECES as f64);
+            let (sin, cos) = circle[k];
             (centre + (u * cos + v * sin) * radius, v * cos - u * sin)
         };
         for k in 0..=RING_PIECES {
@@ -250,6 +260,10 @@ impl Picture for VectorPicture {
             }
             turns.heads.ends.push(usize::from(shown));
         }
+    }
+
+    fn rows(&self) -> usize {
+        self.times.len()
     }
 
     fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
