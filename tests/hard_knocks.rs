@@ -130,7 +130,7 @@ fn one_run_does_not_write_over_another_that_goes_on() {
     assert!(said(&third.stderr).contains("`torquescope recover s.partial.rrd` makes a whole"));
 }
 
-/// At 200 moments from before the file is there to well within it, by seed.
+/// At moments from before the file is there to well within it, by seed: 40, or `TORQUESCOPE_KILLS`.
 #[test]
 fn whatever_the_moment_a_killed_run_leaves_what_can_be_made_whole() {
     let folder = folder_with(&endless());
@@ -148,7 +148,8 @@ fn whatever_the_moment_a_killed_run_leaves_what_can_be_made_whole() {
     first.kill().unwrap();
     first.wait().unwrap();
     let mut opened = 0;
-    for k in 0..200 {
+    let kills = std::env::var("TORQUESCOPE_KILLS").map_or(40, |n| n.parse().unwrap());
+    for k in 0..kills {
         let mut child = torquescope(
             folder.path(),
             &["run", "s.toml", "--force", "--save-every", "0.01"],
@@ -184,7 +185,7 @@ fn whatever_the_moment_a_killed_run_leaves_what_can_be_made_whole() {
         let _ = std::fs::remove_file(&partial);
     }
     // Most moments are within the run.
-    assert!(opened >= 60, "{opened}");
+    assert!(opened >= kills / 4, "{opened} of {kills}");
 }
 
 /// Records, and looks at every so many instants at what a killed program would leave.

@@ -7,7 +7,7 @@ use crate::effect::Profile;
 use crate::record::{self, Destination, Heading, Made, Provenance, RecordError, Recorder, Summary};
 use crate::scene::{Event, Finding, Scene, SceneError, Script, Stepping};
 use crate::sim::{Blow, Outcome, SimError, Simulation, Warning};
-use crate::trace::{Sample, Subject, short, short_numbers, short_vector};
+use crate::trace::{self, Sample, Subject, short, short_numbers, short_vector};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -325,10 +325,10 @@ pub(super) fn record(
             None => start(heading, &subjects)?,
             Some(recorder) => recorder.then(heading, &subjects)?,
         };
-        let (outcome, done) = match plan {
-            Some(plan) => simulation.run_by(&mut plan.chooser(), &mut sink),
-            None => simulation.run(&mut sink),
-        };
+        let (outcome, done) = trace::beside(&mut sink, |sink| match plan {
+            Some(plan) => simulation.run_by(&mut plan.chooser(), sink),
+            None => simulation.run(sink),
+        })?;
         if let Err(SimError::Sink(error)) = done {
             // The file itself failed: nothing more can be written to it.
             return Err(error.into());

@@ -1,7 +1,7 @@
 //! The derived streams of a body that are due together, on their way into a file: one clock for all of them.
 
 use super::RecordError;
-use super::columns::{Ends, Times, numbers, texts};
+use super::columns::{self, Ends, Times, numbers};
 use super::heading::Heading;
 use super::page;
 use super::picture::{Picture, pictures};
@@ -15,7 +15,9 @@ use rerun::components::MediaType;
 #[derive(Clone)]
 pub struct Band {
     pub streams: StreamSet,
-    pub times: Times,
+    /// Rows of a chunk: of numbers, and of what is drawn or read.
+    rows: (usize, usize),
+    times: Times,
     /// Each with its numbers, row by row.
     quantities: Vec<(&'static Quantity, Vec<f64>, Ends)>,
     pictures: Vec<Box<dyn Picture>>,
@@ -28,6 +30,7 @@ pub struct Band {
 #[derive(Clone)]
 pub struct Pages {
     quantities: Vec<&'static Quantity>,
+    times: Times,
     texts: Vec<String>,
 }
 
@@ -35,16 +38,18 @@ impl Pages {
     pub fn of(streams: StreamSet) -> Self {
         Self {
             quantities: streams.quantities(),
+            times: Times::default(),
             texts: Vec::new(),
         }
     }
 }
 
 impl Band {
-    pub fn new(streams: StreamSet, heading: &Heading) -> Self {
+    pub fn new(streams: StreamSet, heading: &Heading, rows: (usize, usize)) -> Self {
         let quantities = streams.quantities().into_iter();
         Self {
             streams,
+            rows,
             times: Times::default(),
             quantities: quantities
                 .map(|quantity| (quantity, Vec::new(), Ends::default()))
@@ -77,42 +82,70 @@ impl Band {
             (quantity.write)(subject, sample, values);
             ends.push(values.len() - before);
         }
-        for picture in &mut self.pictures {
-            picture.row(at, subject, sample);
-        }
+        let pictures = self.pictures.iter_mut().filter(|_| sample.shown);
+        pictures.for_each(|picture| picture.row(at, subject, sample));
         if let Some(sources) = &mut self.sources {
             sources.row(at, subject, sample);
         }
         if let Some(pages) = &mut self.pages {
             let page = page::page(subject, at, sample, &pages.quantities);
+            pages.times.push(at);
             pages.texts.push(page);
         }
     }
 
+    /// Writes what fills a chunk.
+    pub fn flush_full(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
+        self.flush_from(self.rows, file, subject)
+    }
+
     /// Writes what was added.
     pub fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
-        let name = &subject.name;
+        self.flush_from((1, 1), file, subject)
+    }
+
+    /// Writes what has so many rows.
+    fn flush_from(
+        &mut self,
+        (numbers, pictures): (usize, usize),
+        file: &mut RrdFile,
+        subject: &Subject,
+    ) -> Result<(), RecordError> {
+        if self.times.len() >= numbers {
+            self.flush_numbers(file, subject)?;
+        }
+        for picture in &mut self.pictures {
+            if picture.rows() >= pictures {
+                picture.flush(file, subject)?;
+            }
+        }
+        if let Some(sources) = &mut self.sources {
+            sources.flush_from((numbers, pictures), file, subject)?;
+        }
+        if let Some(pages) = &mut self.pages
+            && pages.texts.len() >= pictures
+        {
+            let (times, texts) = (
+                std::mem::take(&mut pages.times),
+                std::mem::take(&mut pages.texts),
+            );
+            let ends = Ends::uniform(texts.len(), 1);
+            let text = columns::texts(TextDocument::descriptor_text(), texts, ends);
+            file.columns(format!("/pages/{}", subject.name), &times, vec![text])?;
+        }
+        Ok(())
+    }
+
+    fn flush_numbers(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
         let times = std::mem::take(&mut self.times);
         let columns = self.quantities.iter_mut().map(|(quantity, values, ends)| {
             let (values, ends) = (std::mem::take(values), std::mem::take(ends));
             numbers(number_descriptor(quantity.name), values, ends)
         });
         let columns: Vec<_> = columns.collect();
-        if !columns.is_empty() {
-            file.columns(format!("/numbers/{name}"), &times, columns)?;
+        match columns.is_empty() {
+            true => Ok(()),
+            false => file.columns(format!("/numbers/{}", subject.name), &times, columns),
         }
-        for picture in &mut self.pictures {
-            picture.flush(file, subject)?;
-        }
-        if let Some(sources) = &mut self.sources {
-            sources.flush(file, subject)?;
-        }
-        if let Some(pages) = &mut self.pages {
-            let pages = std::mem::take(&mut pages.texts);
-            let ends = Ends::uniform(pages.len(), 1);
-            let text = texts(TextDocument::descriptor_text(), pages, ends);
-            file.columns(format!("/pages/{name}"), &times, vec![text])?;
-        }
-        Ok(())
     }
 }

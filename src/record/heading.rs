@@ -3,7 +3,7 @@
 use super::provenance::Provenance;
 use super::scale::Scales;
 use crate::cost::Cost;
-use crate::scene::Scene;
+use crate::scene::{Rate, Scene};
 use crate::sim::Simulation;
 use crate::trace::StreamSet;
 
@@ -31,8 +31,10 @@ pub struct Heading {
     pub has_pushes: bool,
     pub has_impulses: bool,
     pub streams: StreamSet,
-    /// The same in sets that are due together.
-    pub bands: Vec<StreamSet>,
+    /// The same in sets that are due together, each with how often that is, 1/s.
+    pub bands: Vec<(f64, StreamSet)>,
+    /// How often the state is recorded, 1/s.
+    pub state_rate: f64,
     /// What accuracy costs on the scene, where that is what the recording is about.
     pub price: Option<Cost>,
     pub(super) scales: Scales,
@@ -46,6 +48,11 @@ impl Heading {
             .map(|event| event.action.lasts())
             .filter(|&s| s > 0.0);
         let bands = scene.record.bands().into_iter();
+        let steps = 1.0 / scene.step;
+        let per_second = |rate| match rate {
+            Rate::EveryStep => steps,
+            Rate::PerSecond(rate) => steps.min(rate),
+        };
         Self {
             title: scene.title.clone(),
             variant: scene.variant.clone(),
@@ -60,7 +67,10 @@ impl Heading {
             has_pushes: scene.events.iter().any(|event| event.action.pushes()),
             has_impulses: scene.events.iter().any(|event| event.action.strikes()),
             streams: scene.record.streams,
-            bands: bands.map(|(_, streams)| streams).collect(),
+            bands: bands
+                .map(|(rate, streams)| (per_second(rate), streams))
+                .collect(),
+            state_rate: per_second(scene.record.state),
             price: None,
             scales: Scales::new(simulation.subjects(), &simulation.expected()),
         }

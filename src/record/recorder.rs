@@ -25,9 +25,16 @@ use rerun::{Component as _, ComponentDescriptor, TimePoint, Timeline};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Rows a chunk at most: compression sees 64 KiB at a time, and a few hundred rows fill that.
-const STATE_ROWS: usize = 1024;
-const DERIVED_ROWS: usize = 256;
+/// Rows a chunk: what is due in a few simulated seconds, so that a chunk costs little beside its rows and a run that is
+/// cut short lacks little.
+const CHUNK: f64 = 4.0;
+const STATE_ROWS: Range<usize> = 1024..4096;
+const NUMBER_ROWS: Range<usize> = 256..4096;
+/// Of pictures and pages, which take kilobytes a row: as many as make some thousand over all bodies. A chunk costs the
+/// same hundred microseconds whatever is in it, and a line of the file's footer.
+const PICTURE_ROWS: Range<usize> = 256..1024;
+const BUFFERED_PICTURES: usize = 1 << 13;
+const HASH_ROWS: usize = 1024;
 /// Rows buffered over all bodies, so that memory does not grow with their number.
 const BUFFERED_ROWS: usize = 1 << 17;
 
@@ -57,7 +64,6 @@ struct Trace {
     bodies: Vec<BodyRecorder>,
     swarms: Vec<SwarmRecorder>,
     state_rows: usize,
-    derived_rows: usize,
     /// Where forces are recorded.
     impulses: Option<Impulses>,
 }
@@ -209,8 +215,11 @@ impl Trace {
             price::write(file, cost)?;
         }
         let sources = sources::all_names(setting.subjects);
+        let count = setting.subjects.len().max(1);
+        let share = (BUFFERED_ROWS / count).max(8);
+        let pictures = (BUFFERED_PICTURES / count).clamp(PICTURE_ROWS.start, PICTURE_ROWS.end);
         for (k, subject) in setting.subjects.iter().enumerate() {
-            let body = BodyRecorder::new(subject, k, heading, &sources);
+            let body = BodyRecorder::new(subject, k, heading, &sources, (share, pictures));
             body.statics(file, k, heading)?;
             bodies.push(body);
         }
@@ -223,14 +232,12 @@ impl Trace {
         let impulses = heading.streams.contains("force");
         let impulses =
             impulses.then(|| Impulses::new(&heading.scales, heading.impulse_shown_for()));
-        let share = (BUFFERED_ROWS / bodies.len().max(1)).max(8);
         Ok(Self {
             hash_times: Times::default(),
             hashes: Vec::new(),
             bodies,
             swarms,
-            state_rows: share.min(STATE_ROWS),
-            derived_rows: share.min(DERIVED_ROWS),
+            state_rows: share.min(rows(heading.state_rate, STATE_ROWS)),
             impulses,
         })
     }
@@ -291,9 +298,7 @@ impl Sink for Recorder {
             let due = |band: &&mut Band| sample.due.meets(band.streams);
             for band in body.bands.iter_mut().filter(due) {
                 band.sample(at, &body.subject, sample);
-                if band.times.len() >= self.trace.derived_rows {
-                    band.flush(&mut self.file, &body.subject)?;
-                }
+                band.flush_full(&mut self.file, &body.subject)?;
             }
         }
         Ok(self.keep_up()?)
@@ -338,6 +343,10 @@ impl Sink for Recorder {
         Ok(())
     }
 
+    fn idle(&mut self) -> Result<(), SinkError> {
+        Ok(self.keep_up()?)
+    }
+
     fn wants_fingerprints(&self) -> bool {
         true
     }
@@ -345,11 +354,16 @@ impl Sink for Recorder {
     fn fingerprint(&mut self, at: Instant, hash: u64) -> Result<(), SinkError> {
         self.trace.hash_times.push(at);
         self.trace.hashes.push(hash);
-        if self.trace.hashes.len() >= STATE_ROWS {
+        if self.trace.hashes.len() >= HASH_ROWS {
             self.trace.flush_hashes(&mut self.file)?;
         }
         Ok(())
     }
+}
+
+/// Rows of a chunk of what is due so often (1/s).
+fn rows(rate: f64, few_to_many: Range<usize>) -> usize {
+    ((CHUNK * rate) as usize).clamp(few_to_many.start, few_to_many.end)
 }
 
 fn timepoint(at: Instant) -> TimePoint {
@@ -359,9 +373,17 @@ fn timepoint(at: Instant) -> TimePoint {
 }
 
 impl BodyRecorder {
-    fn new(subject: &Subject, index: usize, heading: &Heading, sources: &[&str]) -> Self {
-        let band = |&streams: &StreamSet| {
-            let mut band = Band::new(streams, heading);
+    fn new(
+        subject: &Subject,
+        index: usize,
+        heading: &Heading,
+        sources: &[&str],
+        (share, pictures): (usize, usize),
+    ) -> Self {
+        let band = |&(rate, streams): &(f64, StreamSet)| {
+            let rows = (rows(rate, NUMBER_ROWS), pictures);
+            let rows = (share.min(rows.0), share.min(rows.1));
+            let mut band = Band::new(streams, heading, rows);
             // A page is for reading: only bodies that have a tab have one.
             if streams.contains("numbers") && index < MOST_TABS {
                 band.pages = Some(Pages::of(heading.streams));

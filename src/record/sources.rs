@@ -96,12 +96,29 @@ impl Sources {
                 column.push(part);
             }
         }
-        for picture in &mut self.pictures {
-            picture.row(at, subject, sample);
-        }
+        let pictures = self.pictures.iter_mut().filter(|_| sample.shown);
+        pictures.for_each(|picture| picture.row(at, subject, sample));
     }
 
-    pub fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
+    /// Writes what has so many rows, of numbers and of pictures.
+    pub fn flush_from(
+        &mut self,
+        (numbers, pictures): (usize, usize),
+        file: &mut RrdFile,
+        subject: &Subject,
+    ) -> Result<(), RecordError> {
+        if self.times.len() >= numbers {
+            self.flush_numbers(file, subject)?;
+        }
+        for picture in &mut self.pictures {
+            if picture.rows() >= pictures {
+                picture.flush(file, subject)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn flush_numbers(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
         let times = std::mem::take(&mut self.times);
         let ends = Ends::uniform(times.len(), 1);
         let names = subject.sources.iter().map(String::as_str).chain([SUM]);
@@ -110,9 +127,6 @@ impl Sources {
             let columns = columns
                 .map(|(part, values)| numbers(number_descriptor(part), values, ends.clone()));
             file.columns(numbers_path(subject, name), &times, columns.collect())?;
-        }
-        for picture in &mut self.pictures {
-            picture.flush(file, subject)?;
         }
         Ok(())
     }

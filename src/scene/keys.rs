@@ -229,7 +229,7 @@ pub const HOW_OFTEN: Takes = Takes::Either(&[Takes::Words(&["every"]), Takes::Po
 
 pub static RATES: Keys = Keys {
     name: "[record.rates]",
-    about: "Streams that go at a rate of their own: each by its name, \"every\" (step) or samples per simulated second.",
+    about: "Streams that go at a rate of their own: each by its name, \"every\" (step) or samples per simulated second. Pictures are drawn no oftener than `rate`.",
     also: Some(Registry::Streams),
     ..PLAIN
 };

@@ -9,9 +9,10 @@ use crate::effect::{Decay, Frame, Load, Member, Pulse, Push, Term, WrenchBlock};
 use crate::integrator::{Interval, Kind, Method, Refusal, Step, Stepper, Work};
 use crate::mass::tensor;
 use crate::scene::{Body, Change, Event, Framed, Scene, lasting};
-use crate::trace::{Deviation, Motion, PointForce, Sample, StreamSet, Subject};
+use crate::trace::{Deviation, Instant, Motion, PointForce, Poses, Sample, StreamSet, Subject};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::ops::Range;
+use std::sync::Arc;
 
 #[derive(Clone)]
 pub struct Group {
@@ -30,7 +31,9 @@ pub struct Group {
     stepper: Option<Box<dyn Stepper>>,
     /// The stepper before the stretch that is being taken, and the states kept of it.
     before: Option<Box<dyn Stepper>>,
-    kept: Vec<StateBlock>,
+    kept: Arc<Vec<StateBlock>>,
+    /// Room for those of other stretches: the last ones may still be on their way to be recorded.
+    room: Vec<Arc<Vec<StateBlock>>>,
     /// By name.
     pub method: &'static str,
     /// How it gets through time.
@@ -113,7 +116,8 @@ impl Group {
             q_pb: [UnitQuaternion::identity(); LANES],
             stepper: None,
             before: None,
-            kept: Vec::new(),
+            kept: Arc::default(),
+            room: Vec::new(),
             method: "",
             steps: None,
             choice: None,
@@ -214,8 +218,17 @@ impl Group {
         let Some(stepper) = &mut self.stepper else {
             return;
         };
-        self.kept.clear();
-        stepper.advance(steps, &mut self.kept);
+        let last = std::mem::take(&mut self.kept);
+        self.room.push(last);
+        let free = self
+            .room
+            .iter()
+            .position(|room| Arc::strong_count(room) == 1);
+        let room = free.map(|k| self.room.swap_remove(k));
+        let mut kept = room.and_then(Arc::into_inner).unwrap_or_default();
+        kept.clear();
+        stepper.advance(steps, &mut kept);
+        self.kept = Arc::new(kept);
         self.state = stepper.state();
     }
 
@@ -400,7 +413,7 @@ impl Group {
 
     /// The states as poses of the bodies' own axes and centres of mass.
     pub fn motions(&self) -> impl Iterator<Item = Motion> + '_ {
-        self.poses(&self.state)
+        (0..self.members.len()).map(|lane| self.motion(lane, self.state.get(lane)))
     }
 
     /// The same of one body.
@@ -409,13 +422,31 @@ impl Group {
         self.motion(lane, self.state.get(lane))
     }
 
-    /// The same of the `k`-th state kept of the last stretch.
-    pub fn motions_kept(&self, k: usize) -> impl Iterator<Item = Motion> + '_ {
-        self.poses(&self.kept[k])
+    /// The same of some states kept of the last stretch, by their places in it.
+    pub fn poses_kept(&self, states: &Arc<[usize]>, instants: &Arc<[Instant]>) -> Poses {
+        let (states, kept) = (Arc::clone(states), Arc::clone(&self.kept));
+        let axes: [Axes; LANES] = std::array::from_fn(|lane| self.axes_of(lane));
+        let count = self.members.len();
+        Poses {
+            bodies: self.members.clone(),
+            instants: Arc::clone(instants),
+            bytes: size_of_val(kept.as_slice()),
+            motions: Box::new(move || {
+                let mut motions = Vec::with_capacity(states.len() * count);
+                for &k in states.iter() {
+                    let lanes = axes.iter().enumerate().take(count);
+                    motions.extend(lanes.map(|(lane, axes)| axes.motion(kept[k].get(lane))));
+                }
+                motions
+            }),
+        }
     }
 
-    fn poses<'a>(&'a self, block: &'a StateBlock) -> impl Iterator<Item = Motion> + 'a {
-        (0..self.members.len()).map(move |lane| self.motion(lane, block.get(lane)))
+    fn axes_of(&self, lane: usize) -> Axes {
+        Axes {
+            centre_p: self.inertial.get(lane).centre_p,
+            q_pb: self.q_pb[lane],
+        }
     }
 
     /// The states and what the model says follows, at time `t`.
@@ -479,6 +510,7 @@ impl Group {
         let pushes = pushes.map(|(push, pulse)| acting(push, pulse.part(t), &state));
         Sample {
             due: StreamSet::none(),
+            shown: true,
             motion: self.motion(lane, state),
             tau_w,
             alpha_w,
@@ -495,12 +527,27 @@ impl Group {
     }
 
     fn motion(&self, lane: usize, state: State) -> Motion {
-        let arm_w = state.to_world(self.inertial.get(lane).centre_p);
+        self.axes_of(lane).motion(state)
+    }
+}
+
+/// A body's own axes and centre of mass, as its state sees them.
+#[derive(Clone, Copy)]
+struct Axes {
+    /// From the reference point, principal axes, m.
+    centre_p: Vector3<f64>,
+    /// Body axes → principal axes.
+    q_pb: UnitQuaternion<f64>,
+}
+
+impl Axes {
+    fn motion(&self, state: State) -> Motion {
+        let arm_w = state.to_world(self.centre_p);
         let q_wp = UnitQuaternion::new_unchecked(state.q_wp);
         Motion {
             position_w: state.x_w + arm_w,
             velocity_w: state.v_w + state.omega_w.cross(&arm_w),
-            q_wb: q_wp * self.q_pb[lane],
+            q_wb: q_wp * self.q_pb,
             omega_w: state.omega_w,
         }
     }

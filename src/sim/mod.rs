@@ -439,18 +439,13 @@ impl<'s> Simulation<'s> {
 
     /// Delivers what was kept of a stretch: the states group by group, then the derived streams.
     fn deliver_stretch(&self, stretch: &Stretch, sink: &mut dyn Sink) -> Result<(), SinkError> {
-        let states = || {
-            let kept = stretch.kept.iter().enumerate();
-            kept.filter(|(_, kept)| kept.state)
-        };
-        let instants: Vec<Instant> = states().map(|(_, kept)| kept.at).collect();
+        let kept = stretch.kept.iter().enumerate();
+        let states = kept.filter(|(_, kept)| kept.state);
+        let (states, instants): (Vec<usize>, Vec<Instant>) =
+            states.map(|(k, kept)| (k, kept.at)).unzip();
+        let (states, instants) = (states.into(), instants.into());
         for group in &self.groups {
-            let motions: Vec<Motion> = states().flat_map(|(k, _)| group.motions_kept(k)).collect();
-            sink.motions(&Track {
-                bodies: group.members.clone(),
-                instants: &instants,
-                motions: &motions,
-            })?;
+            sink.poses(group.poses_kept(&states, &instants))?;
         }
         for (k, kept) in stretch.kept.iter().enumerate() {
             if kept.display || !kept.due.is_empty() {
@@ -834,20 +829,21 @@ impl<'s> Simulation<'s> {
         self.deliver_when(first, at, samples, true, sink)
     }
 
-    /// The same; they are looked for drift where that is asked for, or where a stream that is due says it.
+    /// The same; at an instant that is not shown they are looked for drift only where a stream that is due says it.
     fn deliver_when(
         &self,
         first: usize,
         at: Instant,
         (mut samples, due): (Vec<Sample>, StreamSet),
-        looked: bool,
+        shown: bool,
         sink: &mut dyn Sink,
     ) -> Result<(), SinkError> {
         let mut news = Vec::new();
         for (body, sample) in (first..).zip(&mut samples) {
             sample.due = due;
+            sample.shown = shown;
             sample.step_time = self.step_time;
-            if looked || due.meets(self.judged) {
+            if shown || due.meets(self.judged) {
                 news.extend(self.judge(body, sample, at));
             }
         }

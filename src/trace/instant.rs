@@ -123,6 +123,8 @@ pub struct Deviation {
 pub struct Sample {
     /// The streams that are to be recorded of it. Sources and deviations are there only where these say them.
     pub due: StreamSet,
+    /// Whether pictures are due: numbers may be wanted oftener than a screen shows anything.
+    pub shown: bool,
     pub motion: Motion,
     /// Applied torque about the reference point, world, N·m: everything but the gyroscopic term.
     pub tau_w: Vector3<f64>,

@@ -79,6 +79,10 @@ impl Picture for ForcePicture {
         Box::new(self.clone())
     }
 
+    fn rows(&self) -> usize {
+        self.times.len()
+    }
+
     fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
         let times = std::mem::take(&mut self.times);
         let path = format!("/force/{}", subject.name);

@@ -107,7 +107,7 @@ pub const DRAWN: [Drawn; 5] = [
 ];
 
 /// The drawing of one quantity of one body.
-pub trait Picture {
+pub trait Picture: Send {
     /// Writes what does not change.
     fn statics(&self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError>;
 
@@ -116,6 +116,9 @@ pub trait Picture {
 
     /// The same, with what was added.
     fn copy(&self) -> Box<dyn Picture>;
+
+    /// How many instants were added.
+    fn rows(&self) -> usize;
 
     /// Writes what was added.
     fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError>;

@@ -14,7 +14,7 @@ use crate::trace::{Instant, Sample, Subject, brief};
 use nalgebra::Vector3;
 use rerun::archetypes::{Arrows3D, CoordinateFrame, LineStrips3D, Points3D, Transform3D};
 use rerun::components::Radius;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// The ring: its radius and its place along the axis, in lengths of the arrow; its arc.
 const RING_RADIUS: f64 = 0.2;
@@ -165,6 +165,15 @@ impl VectorPicture {
     }
 }
 
+/// Sine and cosine along the ring.
+fn circle() -> &'static [(f64, f64); RING_PIECES + 1] {
+    static CIRCLE: OnceLock<[(f64, f64); RING_PIECES + 1]> = OnceLock::new();
+    CIRCLE.get_or_init(|| {
+        // The same on every machine, as all that is recorded.
+        std::array::from_fn(|k| libm::sincos(RING_ARC * k as f64 / RING_PIECES as f64))
+    })
+}
+
 impl Turns {
     /// A ring about `axis`, ending in an arrowhead.
     fn push(&mut self, axis: Vector3<f64>) {
@@ -178,9 +187,9 @@ impl Turns {
         let v = n.cross(&u);
         let centre = axis * RING_PLACE;
         let radius = RING_RADIUS * length;
+        let circle = circle();
         let at = |k: usize| {
-            // The same on every machine, as all that is recorded.
-            let (sin, cos) = libm::sincos(RING_ARC * k as f64 / RING_PIECES as f64);
+            let (sin, cos) = circle[k];
             (centre + (u * cos + v * sin) * radius, v * cos - u * sin)
         };
         for k in 0..=RING_PIECES {
@@ -257,6 +266,10 @@ impl Picture for VectorPicture {
 
     fn copy(&self) -> Box<dyn Picture> {
         Box::new(self.clone())
+    }
+
+    fn rows(&self) -> usize {
+        self.times.len()
     }
 
     fn flush(&mut self, file: &mut RrdFile, subject: &Subject) -> Result<(), RecordError> {
