@@ -43,14 +43,14 @@ pub fn beside<T>(
     })
 }
 
+/// The far end: what it came to.
+type Far<'scope> = ScopedJoinHandle<'scope, Result<(), SinkError>>;
+
 /// The near end.
 struct Beside<'scope> {
     batch: Batch,
     /// The far end, as long as it takes anything.
-    to: Option<(
-        SyncSender<Batch>,
-        ScopedJoinHandle<'scope, Result<(), SinkError>>,
-    )>,
+    to: Option<(SyncSender<Batch>, Far<'scope>)>,
     wants_fingerprints: bool,
 }
 
