@@ -47,6 +47,9 @@ pub fn beside<T>(
     })
 }
 
+/// The far end: what it came to.
+type Far<'scope> = ScopedJoinHandle<'scope, Result<(), SinkError>>;
+
 /// The near end.
 struct Beside<'scope> {
     batch: Batch,

@@ -130,43 +130,82 @@ fn digits(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{}", x + 0.0);
     }
-    // -1.23400e-2: what the digits are is known then, only their point is elsewhere.
-    let rounded = format!("{x:.*e}", digits - 1);
-    let (Some((mantissa, exponent)), negative) = (
-        rounded.trim_start_matches('-').split_once('e'),
-        x.is_sign_negative(),
-    ) else {
-        return rounded;
+    let known = figures(x.abs(), digits).unwrap_or_else(|| exact_figures(x.abs(), digits));
+    let (mut figures, place) = known;
+    let mut count = digits as i32;
+    while figures % 10 == 0 && count > 1 {
+        figures /= 10;
+        count -= 1;
+    }
+    let sign = if x < 0.0 { "-" } else { "" };
+    let zeros = |count: i32| &"000000000"[..count.clamp(0, 9) as usize];
+    let parted = |after: i32| {
+        let unit = 10_u64.pow(after.max(0) as u32);
+        (figures / unit, figures % unit)
     };
-    let place: i32 = exponent.parse().unwrap_or(0);
-    let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
-    let mut text = String::with_capacity(16);
-    if negative {
-        text.push('-');
-    }
     if !(-4..7).contains(&place) {
-        text.push_str(mantissa);
-        text.push('e');
-        text.push_str(exponent);
-        return text;
+        let (first, rest) = parted(count - 1);
+        return match count {
+            1 => format!("{sign}{first}e{place}"),
+            _ => format!(
+                "{sign}{first}.{rest:0width$}e{place}",
+                width = count as usize - 1
+            ),
+        };
     }
-    let figures = mantissa.bytes().filter(u8::is_ascii_digit).map(char::from);
     if place < 0 {
-        text.push_str("0.");
-        text.extend((1..-place).map(|_| '0'));
-        text.extend(figures);
-        return text;
+        return format!("{sign}0.{}{figures}", zeros(-place - 1));
     }
-    let whole = place as usize + 1;
-    let count = mantissa.len() - usize::from(mantissa.contains('.'));
-    for (k, figure) in figures.enumerate() {
-        if k == whole {
-            text.push('.');
-        }
-        text.push(figure);
+    let after = count - 1 - place;
+    if after <= 0 {
+        return format!("{sign}{figures}{}", zeros(-after));
     }
-    text.extend((count..whole).map(|_| '0'));
-    text
+    let (whole, rest) = parted(after);
+    format!("{sign}{whole}.{rest:0width$}", width = after as usize)
+}
+
+/// The first so many figures of a number above zero, rounded, and the power of ten of the first; `None` where a product
+/// in 64 bits cannot tell them.
+fn figures(x: f64, digits: usize) -> Option<(u64, i32)> {
+    /// All exact.
+    const POWERS: [f64; 23] = [
+        1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+        1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+    ];
+    if !(1e-12..1e12).contains(&x) {
+        return None;
+    }
+    let scaled = |place: i32| match digits as i32 - 1 - place {
+        up @ 0.. => x * POWERS[up as usize],
+        down => x / POWERS[-down as usize],
+    };
+    // 2^e ≤ x < 2^(e+1), so this is the place or one below it.
+    let exponent = (x.to_bits() >> 52) as i32 - 1023;
+    let mut place = (f64::from(exponent) * std::f64::consts::LOG10_2).floor() as i32;
+    if scaled(place) >= POWERS[digits] {
+        place += 1;
+    }
+    let y = scaled(place);
+    let rest = y - y.floor();
+    // y is off by a rounding, 1e-10 or less.
+    if (rest - 0.5).abs() < 1e-6 || y < POWERS[digits - 1] {
+        return None;
+    }
+    let figures = y.floor() as u64 + u64::from(rest > 0.5);
+    let limit = POWERS[digits] as u64;
+    Some(match figures < limit {
+        true => (figures, place),
+        false => (figures / 10, place + 1),
+    })
+}
+
+/// The same by the number's every digit: 1.23400e-2.
+fn exact_figures(x: f64, digits: usize) -> (u64, i32) {
+    let text = format!("{x:.*e}", digits - 1);
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let figures = mantissa.bytes().filter(u8::is_ascii_digit);
+    let figures = figures.fold(0, |n, figure| 10 * n + u64::from(figure - b'0'));
+    (figures, exponent.parse().unwrap_or(0))
 }
 
 /// Numbers that belong together, for people: those below 1e-9 of the largest do not show
@@ -224,10 +263,17 @@ mod tests {
             f64::MAX,
         ];
         let mut x = 1.234_567_890_123e-9;
-        while x < 1e12 {
+        while x < 1e14 {
             some.push(x);
-            x *= 1.037_1;
+            // Ties, and numbers beside them.
+            let tie = (x.to_bits() >> 32) as f64 / 2.0;
+            some.extend([tie, tie * (1.0 + f64::EPSILON), tie * (1.0 - f64::EPSILON)]);
+            some.extend(
+                [1e-3, 1e-6, 1e-9].map(|unit| (tie * 2.0 + 0.5).floor() % 2e6 / 2.0 * unit),
+            );
+            x *= 1.000_371;
         }
+        some.retain(|x| *x != 0.0);
         for x in some {
             for x in [x, -x] {
                 assert_eq!(short(x), by_parsing(x), "{x:e}");

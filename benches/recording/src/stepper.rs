@@ -13,6 +13,7 @@ use torquescope::sim::Simulation;
 use torquescope::trace::{Sink, beside};
 
 const DEFAULT: &str = "";
+const STATE: &str = "streams = []";
 const ALL: &str = "rate = 1000";
 
 struct Case {
@@ -30,6 +31,11 @@ fn cases() -> Vec<Case> {
     };
     vec![
         case("a top by rk4", scenes::top(1 << 17, DEFAULT), 1 << 17),
+        case(
+            "a top by rk4, the state alone",
+            scenes::top(1 << 17, STATE),
+            1 << 17,
+        ),
         case(
             "1,000 bodies by rk4, state at 60 Hz",
             scenes::bodies(1000, 500, "state = 60"),
@@ -108,9 +114,10 @@ pub fn stepper(report: &mut Report, repeats: usize) {
         let place = Place::new("stepper");
         let bare = bare(&case.scene);
         let walls = RefCell::new([Vec::new(), Vec::new(), Vec::new()]);
-        let clocked = |k: usize, run: &dyn Fn() -> f64| {
+        // To the end of the run: what is on its way then is some megabytes.
+        let clocked = |k: usize, run: &mut dyn FnMut()| {
             let start = Instant::now();
-            let thread = run();
+            let thread = timed(run);
             walls.borrow_mut()[k].push(start.elapsed().as_nanos() as f64);
             thread
         };
@@ -120,10 +127,10 @@ pub fn stepper(report: &mut Report, repeats: usize) {
             let recorder = Recorder::create(&place, &heading, simulation.subjects());
             recorder.unwrap_or_else(|error| panic!("{error}"))
         };
-        let alone = || timed(|| run(&bare, &mut Nowhere { computes: false }));
+        let alone = || clocked(0, &mut || run(&bare, &mut Nowhere { computes: false }));
         let with = || {
             let mut recorder = recorder();
-            let time = timed(|| {
+            let time = clocked(1, &mut || {
                 beside(&mut recorder, |sink| run(&case.scene, sink))
                     .unwrap_or_else(|error| panic!("{error}"));
             });
@@ -132,15 +139,12 @@ pub fn stepper(report: &mut Report, repeats: usize) {
         };
         let here = || {
             let mut recorder = recorder();
-            let time = timed(|| run(&case.scene, &mut recorder));
+            let time = clocked(2, &mut || run(&case.scene, &mut recorder));
             recorder.finish().unwrap_or_else(|error| panic!("{error}"));
             time
         };
-        let mut contestants: Vec<Contestant> = vec![
-            Box::new(|| clocked(0, &alone)),
-            Box::new(|| clocked(1, &with)),
-            Box::new(|| clocked(2, &here)),
-        ];
+        let mut contestants: Vec<Contestant> =
+            vec![Box::new(alone), Box::new(with), Box::new(here)];
         let times = race(&mut contestants, repeats);
         drop(contestants);
         let walls = walls
