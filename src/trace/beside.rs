@@ -60,8 +60,6 @@ struct Beside<'scope> {
     wants_fingerprints: bool,
 }
 
-type Far<'scope> = ScopedJoinHandle<'scope, Result<(), SinkError>>;
-
 /// Calls in their order, and what they were given.
 #[derive(Default)]
 struct Batch {

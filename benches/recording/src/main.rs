@@ -73,6 +73,11 @@ impl Place {
         let name = format!("torquescope-bench-{}-{name}.rrd", std::process::id());
         Self(std::env::temp_dir().join(name))
     }
+
+    /// For a recording, again and again.
+    pub fn destination(&self) -> torquescope::record::Destination {
+        torquescope::record::Destination::new(&self.0).replacing(true)
+    }
 }
 
 impl std::ops::Deref for Place {

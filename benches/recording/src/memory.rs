@@ -41,7 +41,7 @@ pub fn child() {
     let place = Place::new("hour");
     let simulation = Simulation::new(&scene);
     let heading = Heading::of(&scene, &simulation);
-    let recorder = Recorder::create(&place, &heading, simulation.subjects());
+    let recorder = Recorder::create(&place.destination(), &heading, simulation.subjects());
     let mut recorder = recorder.unwrap_or_else(|error| panic!("{error}"));
     let ran = beside(&mut recorder, |sink| simulation.run(sink));
     let (_, done) = ran.unwrap_or_else(|error| panic!("{error}"));

@@ -124,7 +124,7 @@ pub fn stepper(report: &mut Report, repeats: usize) {
         let recorder = || {
             let simulation = Simulation::new(&case.scene);
             let heading = Heading::of(&case.scene, &simulation);
-            let recorder = Recorder::create(&place, &heading, simulation.subjects());
+            let recorder = Recorder::create(&place.destination(), &heading, simulation.subjects());
             recorder.unwrap_or_else(|error| panic!("{error}"))
         };
         let alone = || clocked(0, &mut || run(&bare, &mut Nowhere { computes: false }));

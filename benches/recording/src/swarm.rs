@@ -22,7 +22,7 @@ pub fn swarm(report: &mut Report, repeats: usize) {
     let mut contestants: Vec<Contestant> = vec![Box::new(|| {
         let simulation = Simulation::new(&scene);
         let heading = Heading::of(&scene, &simulation);
-        let recorder = Recorder::create(&place, &heading, simulation.subjects());
+        let recorder = Recorder::create(&place.destination(), &heading, simulation.subjects());
         let mut recorder = recorder.unwrap_or_else(|error| panic!("{error}"));
         let start = Instant::now();
         let ran = beside(&mut recorder, |sink| simulation.run(sink));

@@ -66,7 +66,7 @@ fn recorder(scene: &Scene, place: &Place) -> (Recorder, Vec<Subject>) {
     let simulation = Simulation::new(scene);
     let subjects = simulation.subjects().to_vec();
     let heading = Heading::of(scene, &simulation);
-    let recorder = Recorder::create(place, &heading, &subjects);
+    let recorder = Recorder::create(&place.destination(), &heading, &subjects);
     (recorder.unwrap_or_else(|error| panic!("{error}")), subjects)
 }
 
