@@ -34,7 +34,12 @@ pub struct RrdFile {
     /// When everything was last in the file, and how long that may be ago.
     kept_up: Instant,
     keeps_up: Duration,
+    /// How long it took to put everything there.
+    took: Duration,
 }
+
+/// Of many bodies much waits: writing it ahead of time takes at most a tenth of the time.
+const SELDOM: u32 = 10;
 
 /// Messages that stand behind those that are settled until others take their place.
 #[derive(Default)]
@@ -87,6 +92,7 @@ impl RrdFile {
             tail: None,
             kept_up: Instant::now(),
             keeps_up: Duration::MAX,
+            took: Duration::ZERO,
         };
         file.open(Store::Blueprint)?;
         Ok(file)
@@ -200,11 +206,12 @@ impl RrdFile {
 
     /// Whether rows have waited in memory longer than they may.
     pub fn is_behind(&self) -> bool {
-        self.kept_up.elapsed() >= self.keeps_up
+        self.kept_up.elapsed() >= self.keeps_up.max(SELDOM * self.took)
     }
 
     /// From here on what is written is not settled: it will be written again.
     pub fn begin_tail(&mut self) {
+        self.kept_up = Instant::now();
         self.tail = Some(Tail::default());
     }
 
@@ -212,6 +219,7 @@ impl RrdFile {
     pub fn end_tail(&mut self) -> Result<(), RecordError> {
         let tail = self.tail.take().unwrap_or_default();
         let done = self.frames.output().tail(&tail.bytes);
+        self.took = self.kept_up.elapsed();
         self.kept_up = Instant::now();
         done.map_err(|error| self.stopped(&error))
     }
