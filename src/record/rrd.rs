@@ -206,7 +206,12 @@ impl RrdFile {
 
     /// Whether rows have waited in memory longer than they may.
     pub fn is_behind(&self) -> bool {
-        self.kept_up.elapsed() >= self.keeps_up.max(SELDOM * self.took)
+        let often = match self.keeps_up.is_zero() {
+            // At once, whatever it costs.
+            true => Duration::ZERO,
+            false => self.keeps_up.max(SELDOM * self.took),
+        };
+        self.kept_up.elapsed() >= often
     }
 
     /// From here on what is written is not settled: it will be written again.
