@@ -30,8 +30,9 @@ fn folder_with(scene: &str) -> tempfile::TempDir {
 
 /// Exit code, stdout, stderr.
 fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    // Each recording takes the place of the last.
     let output = torquescope(folder)
-        .arg("run")
+        .args(["run", "--force"])
         .args(arguments)
         .output()
         .unwrap();

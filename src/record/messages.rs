@@ -297,7 +297,9 @@ impl Messages {
                 let new = new.filter(|place| !known.contains(place));
                 self.damaged = known.iter().cloned().chain(new).collect();
             }
-            _ => self.damaged.push(from..to),
+            // Another tool has put the messages in another order, or packed them otherwise.
+            Some(_) => {}
+            None => self.damaged.push(from..to),
         }
     }
 
