@@ -9,17 +9,14 @@ mod precision;
 mod problems;
 mod read;
 mod report;
+mod sections;
 mod threads;
 mod throughput;
 mod weight;
 
-use report::Report;
+use sections::Section;
 
-const USAGE: &str = "usage: torquescope-bench [--json] [--repeats N] [SECTION...]";
-
-type Section = fn(&mut Report, usize);
-
-const SECTIONS: &[(&str, Section)] = &[
+const SECTIONS: &[Section] = &[
     ("methods", throughput::methods),
     ("tutorial", throughput::tutorial),
     ("threads", threads::threads),
@@ -30,35 +27,5 @@ const SECTIONS: &[(&str, Section)] = &[
 ];
 
 fn main() {
-    let (mut json, mut repeats, mut only) = (false, 15, Vec::new());
-    let mut arguments = std::env::args().skip(1);
-    while let Some(argument) = arguments.next() {
-        match argument.as_str() {
-            "--json" => json = true,
-            "--repeats" => repeats = number(arguments.next()),
-            name if SECTIONS.iter().any(|(known, _)| *known == name) => only.push(argument),
-            _ => stop(),
-        }
-    }
-    let mut report = Report::default();
-    for (name, section) in SECTIONS {
-        if only.is_empty() || only.iter().any(|wanted| wanted == name) {
-            section(&mut report, repeats);
-        }
-    }
-    match json {
-        true => println!("{}", report.json()),
-        false => report.print(),
-    }
-}
-
-fn number(argument: Option<String>) -> usize {
-    let number = argument.and_then(|text| text.parse().ok());
-    number.filter(|&n| n > 0).unwrap_or_else(|| stop())
-}
-
-fn stop() -> ! {
-    let names: Vec<&str> = SECTIONS.iter().map(|(name, _)| *name).collect();
-    eprintln!("{USAGE}\nsections: {}", names.join(", "));
-    std::process::exit(2)
+    sections::run("torquescope-bench", SECTIONS, 15);
 }

@@ -134,11 +134,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         .iter()
         .filter_map(|ran| ran.done.as_ref().err().map(ToString::to_string))
         .collect();
-    if let Some(code) = stop.code() {
-        print::err(&format!(
+    let kept = || {
+        format!(
             "{}; everything up to that instant is recorded",
             failed.join("\n")
-        ));
+        )
+    };
+    if let Some(code) = stop.code() {
+        print::err(&kept());
         return Err(Told(code).into());
     }
     if let Some(page) = page {
@@ -149,10 +152,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     match failed.is_empty() {
         true => Ok(()),
-        false => Err(anyhow::anyhow!(
-            "{}; everything up to that instant is recorded",
-            failed.join("\n")
-        )),
+        false => Err(anyhow::anyhow!(kept())),
     }
 }
 

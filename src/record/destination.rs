@@ -5,9 +5,9 @@
 //! memory longer than it may is written behind the end of what is settled, and written over by it: what a
 //! whole file holds does not depend on the clock.
 
-use super::{MAGIC, RecordError};
+use super::{RecordError, is_recording};
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
+use std::io::{Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -282,10 +282,9 @@ fn must_be_free(path: &Path, replace: bool) -> Result<(), RecordError> {
     if !is_file {
         return Ok(());
     }
+    let is_recording = is_recording(path);
     let path = path.display().to_string();
-    let mut magic = [0; MAGIC.len()];
-    let read = File::open(&path).and_then(|mut file| file.read_exact(&mut magic));
-    if read.is_err() || &magic != MAGIC {
+    if !is_recording {
         return Err(RecordError::Occupied { path });
     }
     match replace {
@@ -296,6 +295,7 @@ fn must_be_free(path: &Path, replace: bool) -> Result<(), RecordError> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::MAGIC;
     use super::*;
 
     fn write(to: &Destination, parts: &[&[u8]]) -> Output {

@@ -92,7 +92,13 @@ impl Frames {
     }
 
     fn put_chunk(&mut self, store: &StoreId, chunk: &Chunk) -> Result<(), String> {
-        let message = chunk.to_arrow_msg().map_err(said)?;
+        // The message and the footer's line are made of the same batch.
+        let batch = chunk.to_chunk_batch().map_err(said)?;
+        let message = ArrowMsg {
+            chunk_id: chunk.id().as_tuid(),
+            batch: batch.clone().into(),
+            on_release: None,
+        };
         let message = LogMsg::ArrowMsg(store.clone(), message);
         let unpacked = encode(&message, &mut self.scratch)?;
         let start = self.bytes + MessageHeader::ENCODED_SIZE_BYTES as u64;
@@ -101,7 +107,6 @@ impl Frames {
             // Looked up by nobody, and by its many small chunks it would be most of a footer.
             return Ok(());
         }
-        let batch = chunk.to_chunk_batch().map_err(said)?;
         let known = self.manifests.iter().position(|(id, _)| id == store);
         let index = known.unwrap_or_else(|| {
             let manifest = RrdManifestBuilder::default();

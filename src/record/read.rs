@@ -45,18 +45,24 @@ pub fn is_recording(path: &Path) -> bool {
     read.is_ok() && &magic == MAGIC
 }
 
-/// Reads what the recordings of a file were made from.
-pub fn read(path: &Path) -> Result<Made, ReadError> {
+/// The messages of a file that is a recording.
+pub(super) fn open(path: &Path) -> Result<Messages, ReadError> {
     let name = || path.display().to_string();
     let unreadable = |error: std::io::Error| ReadError::Unreadable {
         path: name(),
         why: error.to_string(),
     };
     std::fs::metadata(path).map_err(unreadable)?;
-    if !is_recording(path) {
-        return Err(ReadError::NoRecording { path: name() });
+    match is_recording(path) {
+        true => Messages::open(path).map_err(unreadable),
+        false => Err(ReadError::NoRecording { path: name() }),
     }
-    let mut messages = Messages::open(path).map_err(unreadable)?;
+}
+
+/// Reads what the recordings of a file were made from.
+pub fn read(path: &Path) -> Result<Made, ReadError> {
+    let name = || path.display().to_string();
+    let mut messages = open(path)?;
     let mut found: Vec<(StoreId, Parts)> = Vec::new();
     while let Some((store, chunk)) = messages.next_chunk() {
         let known = found.iter().position(|(known, _)| *known == store);

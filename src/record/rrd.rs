@@ -156,8 +156,6 @@ impl RrdFile {
         at: TimePoint,
         parts: &[&dyn AsComponents],
     ) -> Result<(), RecordError> {
-        let counts = store == Store::Recording && !at.is_static() && self.tail.is_none();
-        self.rows += u64::from(counts);
         let (chunk, row) = (self.chunk_id(), self.row_id());
         let batches = parts.iter().flat_map(|part| part.as_serialized_batches());
         let chunk = Chunk::builder_with_id(chunk, path)
@@ -190,9 +188,6 @@ impl RrdFile {
                 .collect(),
             columns.into_iter().collect(),
         );
-        if self.tail.is_none() {
-            self.rows += times.len() as u64;
-        }
         self.chunk(Store::Recording, chunk)
     }
 
@@ -265,8 +260,13 @@ impl RrdFile {
                 message.and_then(|message| encode(&LogMsg::ArrowMsg(id, message), &mut tail.bytes));
             return done.map(|_| ()).map_err(|error| self.stopped(&error));
         }
-        if let (Some(comparison), Store::Recording) = (&mut self.comparison, store) {
-            comparison.take(&chunk);
+        if store == Store::Recording {
+            if !chunk.is_static() {
+                self.rows += chunk.num_rows() as u64;
+            }
+            if let Some(comparison) = &mut self.comparison {
+                comparison.take(&chunk);
+            }
         }
         let done = self.frames.chunk(&id, &chunk);
         done.map_err(|error| self.stopped(&error))

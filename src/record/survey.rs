@@ -1,8 +1,7 @@
 //! What a file of recordings holds, whoever made it: entities, clocks, what it says of itself.
 
-use super::messages::Messages;
 use super::provenance::{Parts, Provenance};
-use super::read::{ReadError, is_recording};
+use super::read::{self, ReadError};
 use super::rrd::APPLICATION;
 use rerun::external::arrow::array::{Array as _, StringArray};
 use rerun::external::re_log_types::{StoreId, TimeType};
@@ -149,16 +148,7 @@ struct Found {
 
 /// Looks through a file.
 pub fn survey(path: &Path) -> Result<Survey, InspectError> {
-    let name = || path.display().to_string();
-    let unreadable = |error: std::io::Error| ReadError::Unreadable {
-        path: name(),
-        why: error.to_string(),
-    };
-    std::fs::metadata(path).map_err(unreadable)?;
-    if !is_recording(path) {
-        return Err(ReadError::NoRecording { path: name() }.into());
-    }
-    let mut messages = Messages::open(path).map_err(unreadable)?;
+    let mut messages = read::open(path)?;
     let mut found: Vec<Found> = Vec::new();
     while let Some((store, chunk)) = messages.next_chunk() {
         let known = found.iter().position(|known| known.store == store);
@@ -171,7 +161,8 @@ pub fn survey(path: &Path) -> Result<Survey, InspectError> {
     let cut = messages.flaw();
     if found.is_empty() {
         let why = cut.map_or(String::new(), |why| format!(" ({why})"));
-        return Err(InspectError::Nothing { path: name(), why });
+        let path = path.display().to_string();
+        return Err(InspectError::Nothing { path, why });
     }
     Ok(Survey {
         recordings: found.into_iter().map(Found::whole).collect(),

@@ -4,8 +4,7 @@
 //! (f32, at every step), and the angular velocity of `/bodies/NAME/spin`, which is f64 and there at every step. Of
 //! others: transforms and scalars, by entity, as they were logged: relative to the parent.
 
-use super::messages::Messages;
-use super::read::ReadError;
+use super::read;
 use super::survey::{InspectError, STATIC, Survey, times};
 use crate::trace::{Quantity, STREAMS, Shape, Term, Vocabulary};
 use rerun::external::arrow::array::{
@@ -148,11 +147,7 @@ pub(super) fn read_cells(
     wanted: &Wanted,
     mut take: impl FnMut(Cells) -> Result<(), InspectError>,
 ) -> Result<(), InspectError> {
-    let opened = Messages::open(path);
-    let mut messages = opened.map_err(|error| ReadError::Unreadable {
-        path: path.display().to_string(),
-        why: error.to_string(),
-    })?;
+    let mut messages = read::open(path)?;
     let clocks: Vec<Option<String>> = survey
         .recordings
         .iter()

@@ -6,23 +6,20 @@ mod by_log;
 mod kept;
 mod limit;
 #[path = "../../src/measure.rs"]
-#[allow(dead_code)]
 mod measure;
 mod memory;
 #[path = "../../src/report.rs"]
 mod report;
 mod scenes;
+#[path = "../../src/sections.rs"]
+mod sections;
 mod stepper;
 mod swarm;
 mod write;
 
-use report::Report;
+use sections::Section;
 
-const USAGE: &str = "usage: torquescope-bench-recording [--json] [--repeats N] [SECTION...]";
-
-type Section = fn(&mut Report, usize);
-
-const SECTIONS: &[(&str, Section)] = &[
+const SECTIONS: &[Section] = &[
     ("write", write::write),
     ("parts", stepper::parts),
     ("stepper", stepper::stepper),
@@ -31,38 +28,10 @@ const SECTIONS: &[(&str, Section)] = &[
 ];
 
 fn main() {
-    let (mut json, mut repeats, mut only) = (false, 5, Vec::new());
-    let mut arguments = std::env::args().skip(1);
-    while let Some(argument) = arguments.next() {
-        match argument.as_str() {
-            "--json" => json = true,
-            "--repeats" => repeats = number(arguments.next()),
-            memory::CHILD => return memory::child(),
-            name if SECTIONS.iter().any(|(known, _)| *known == name) => only.push(argument),
-            _ => stop(),
-        }
+    match std::env::args().nth(1).as_deref() {
+        Some(memory::CHILD) => memory::child(),
+        _ => sections::run("torquescope-bench-recording", SECTIONS, 5),
     }
-    let mut report = Report::default();
-    for (name, section) in SECTIONS {
-        if only.is_empty() || only.iter().any(|wanted| wanted == name) {
-            section(&mut report, repeats);
-        }
-    }
-    match json {
-        true => println!("{}", report.json()),
-        false => report.print(),
-    }
-}
-
-fn number(argument: Option<String>) -> usize {
-    let number = argument.and_then(|text| text.parse().ok());
-    number.filter(|&n| n > 0).unwrap_or_else(|| stop())
-}
-
-fn stop() -> ! {
-    let names: Vec<&str> = SECTIONS.iter().map(|(name, _)| *name).collect();
-    eprintln!("{USAGE}\nsections: {}", names.join(", "));
-    std::process::exit(2)
 }
 
 /// A file that is gone when the bench is done with it.
