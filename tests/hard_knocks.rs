@@ -449,3 +449,55 @@ fn what_is_damaged_is_left_out_and_the_rest_recovered() {
     assert!(whole.status.success());
     assert!(said(&whole.stdout).ends_with("is whole; there is nothing to recover\n"));
 }
+
+/// A head that is not as it was written hides all that follows: what is there is taken, and nothing away.
+#[test]
+fn a_partial_file_that_cannot_be_read_to_its_end_stays() {
+    let more = "duration = 60.0\n[record]\nstate = \"every\"";
+    let (folder, path, bytes) = recording(&SHORT.replace("duration = 0.5", more));
+    let partial = record::partial_name(&path);
+    std::fs::remove_file(&path).unwrap();
+    let number = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
+    let mut at = 12;
+    while at < bytes.len() / 4 {
+        at += 16 + number(at + 8);
+    }
+    assert!(bytes.len() - at > 2 << 20, "{}", bytes.len());
+    // Its kind, and its length.
+    for (place, value) in [(at, 0x40), (at + 12, 1)] {
+        let mut broken = bytes.clone();
+        broken[place] ^= value;
+        std::fs::write(&partial, &broken).unwrap();
+        let done = output(folder.path(), &["recover", "s.partial.rrd", "--force"]);
+        let out = said(&done.stdout);
+        assert_eq!(done.status.code(), Some(1), "{out}");
+        assert!(
+            out.contains("there may be more in it than could be read; it stays as it is"),
+            "{out}"
+        );
+        assert_eq!(std::fs::read(&partial).unwrap(), broken);
+        assert_eq!(flaw(&path), None);
+    }
+}
+
+/// Rows that were only written ahead of time are there when the recorder goes before its time.
+#[test]
+fn rows_written_ahead_of_time_are_kept() {
+    let folder = folder_with(SHORT);
+    // Nothing happens, so that no row is settled.
+    let scene = "duration = 0.1\n[[body]]\nname = \"a\"\nmass = 1.0\ninertia = [1, 1, 1]\n";
+    let scene = Scene::parse("still", "still", scene).unwrap();
+    let simulation = Simulation::new(&scene);
+    let heading = Heading::of(&scene, &simulation);
+    let to = Destination {
+        keeps_up: Duration::ZERO,
+        ..Destination::new(folder.path().join("s.rrd"))
+    };
+    let subjects = simulation.subjects().to_vec();
+    let mut recorder = Recorder::create(&to, &heading, &subjects).unwrap();
+    simulation.run(&mut recorder).1.unwrap();
+    drop(recorder);
+    let partial = record::partial_name(&to.path);
+    let found = record::recover(&partial, &to).unwrap();
+    assert!(found.rows > 0 && found.until == 0.1, "{found:?}");
+}

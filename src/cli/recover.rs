@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 ///
 /// A run that was killed leaves NAME.partial.rrd: it opens, and lacks what tells where it ends. This writes what can be read of
 /// it as NAME.rrd and takes the partial file away. Where bytes are not those that were written, what they
-/// belong to is left out, the file stays, and the exit code is 1.
+/// belong to is left out; where it cannot be read further there may be more behind: the file stays, and the exit
+/// code is 1.
 #[derive(clap::Args)]
 #[command(after_help = "Example: torquescope recover cone.partial.rrd")]
 pub struct Arguments {
@@ -41,6 +42,8 @@ struct Report<'a> {
     left_out: u64,
     /// Bytes at its end that were cut within a message.
     cut: u64,
+    /// Whether there may be more in it than could be read.
+    more: bool,
 }
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -60,8 +63,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         other => Wrong(other.to_string()).into(),
     })?;
     let is_partial = file.to_string_lossy().ends_with(".partial.rrd");
-    let all_there = found.flaw.is_some() && found.left_out == 0;
-    if all_there && is_partial {
+    let all_there = found.left_out == 0 && !found.more;
+    if found.flaw.is_some() && all_there && is_partial {
         std::fs::remove_file(file)?;
     }
     if arguments.json {
@@ -74,13 +77,14 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
             until: found.until,
             left_out: found.left_out,
             cut: found.cut,
+            more: found.more,
         })?;
     } else {
         print::out(&text(file, &out, &found))?;
     }
-    match found.left_out {
-        0 => Ok(()),
-        _ => Err(Told(1).into()),
+    match all_there {
+        true => Ok(()),
+        false => Err(Told(1).into()),
     }
 }
 
@@ -94,6 +98,9 @@ fn text(file: &Path, out: &Path, found: &Recovered) -> String {
             "its last {} bytes are part of something longer\n",
             found.cut
         );
+    }
+    if found.more {
+        text += "there may be more in it than could be read; it stays as it is\n";
     }
     if found.left_out > 0 {
         text += &format!(

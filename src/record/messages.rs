@@ -127,11 +127,12 @@ impl Messages {
             if !store.is_recording() || is_checksums(&message) {
                 continue;
             }
-            return match quietly(|| Chunk::from_arrow_msg(&message)) {
-                Ok(Ok(chunk)) => Some((store, chunk)),
-                Ok(Err(error)) => self.stop(&error.to_string()),
-                Err(why) => self.stop(&why),
-            };
+            let chunk = quietly(|| Chunk::from_arrow_msg(&message));
+            match chunk.and_then(|chunk| chunk.map_err(|error| error.to_string())) {
+                Ok(chunk) => return Some((store, chunk)),
+                Err(_) if self.goes_on => self.damaged.push(self.place()),
+                Err(why) => return self.stop(&why),
+            }
         }
     }
 
@@ -148,6 +149,11 @@ impl Messages {
     /// Bytes at the end that are no message, once it has been read to there.
     pub fn unread(&self) -> u64 {
         self.bytes - self.read_until
+    }
+
+    /// Whether nothing was read beyond some place because of what is there, once it has been read that far.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped.is_some()
     }
 
     /// What is wrong with the file, once it has been read to its end.

@@ -23,7 +23,13 @@ pub struct Recovered {
     pub left_out: u64,
     /// Bytes at its end that are no message.
     pub cut: u64,
+    /// Whether there may be more in it: it could not be read beyond some place, or what is cut is longer than what one
+    /// write leaves.
+    pub more: bool,
 }
+
+/// A message is seldom longer, and what was being written when a program was killed is at most one.
+const ONE_WRITE: u64 = 1 << 20;
 
 /// Why there is nothing to be had.
 #[derive(Debug, thiserror::Error)]
@@ -98,6 +104,7 @@ fn survey(messages: &mut Messages) -> (Recovered, Vec<Range<u64>>) {
         until: 0.0,
         left_out: 0,
         cut: 0,
+        more: false,
     };
     while let Some((_, chunk)) = messages.next_chunk() {
         found.chunks += 1;
@@ -110,6 +117,7 @@ fn survey(messages: &mut Messages) -> (Recovered, Vec<Range<u64>>) {
     }
     found.flaw = messages.flaw();
     found.cut = messages.unread();
+    found.more = messages.is_stopped() || found.cut > ONE_WRITE;
     (found, messages.damaged().to_vec())
 }
 

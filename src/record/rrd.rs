@@ -27,6 +27,8 @@ pub struct RrdFile {
     blueprint: StoreId,
     next: u64,
     rows: u64,
+    /// Whether any were ever written ahead of time.
+    ahead: bool,
     /// What the recording is held against.
     comparison: Option<Comparison>,
     /// Messages that are not settled, while they are gathered.
@@ -88,6 +90,7 @@ impl RrdFile {
             blueprint: StoreId::new(StoreKind::Blueprint, APPLICATION, blueprint_id),
             next: 1,
             rows: 0,
+            ahead: false,
             comparison: None,
             tail: None,
             kept_up: Instant::now(),
@@ -255,6 +258,7 @@ impl RrdFile {
         let chunk = chunk.map_err(|error| self.stopped(&error))?;
         let id = self.id(store);
         if let Some(tail) = &mut self.tail {
+            self.ahead = true;
             let message = chunk.to_arrow_msg().map_err(|error| error.to_string());
             let done =
                 message.and_then(|message| encode(&LogMsg::ArrowMsg(id, message), &mut tail.bytes));
@@ -305,9 +309,9 @@ impl RrdFile {
 impl Drop for RrdFile {
     /// What is there of a recording is kept when it ends before its time; an empty one is not.
     fn drop(&mut self) {
-        match self.rows {
-            0 => self.frames.output().discard(),
-            _ => self.frames.output().keep(),
+        match self.rows > 0 || self.ahead {
+            true => self.frames.output().keep(),
+            false => self.frames.output().discard(),
         }
     }
 }
