@@ -20,6 +20,7 @@ pub mod exact;
 pub mod integrator;
 #[cfg(feature = "cli")]
 pub mod live;
+pub mod log;
 pub mod mass;
 pub mod math;
 #[cfg(feature = "cli")]

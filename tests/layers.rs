@@ -9,7 +9,7 @@ const LEVELS: [&[&str]; 9] = [
     &["body"],
     &["effect", "exact"],
     &["integrator"],
-    &["scene", "trace"],
+    &["log", "scene", "trace"],
     &["sim"],
     &["cost"],
     &["record", "live"],
