@@ -3,13 +3,17 @@
 //! A node is a whole number of steps and a remainder, so time never drifts by adding steps up:
 //! `t = k h + r`. A step that an event divides is taken in two pieces.
 
+mod parked;
+
+pub use parked::{Parked, Position};
+
 use super::script::Happening;
 use crate::integrator::Step;
 use crate::scene::{Scene, StateRate};
 use crate::trace::Instant;
 
 /// A place on the clock.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Node {
     /// Whole steps.
     grid: u64,
@@ -91,6 +95,13 @@ pub struct Schedule<'s> {
     /// How many of them are past.
     past: usize,
     end: Node,
+    /// Steps that may be taken still, and where it stops.
+    most: u64,
+    halt: Option<Node>,
+    /// What was kept of the last step.
+    last: Option<Kept>,
+    /// Events that hit nothing, so that their ends were taken back.
+    missed: Vec<usize>,
 }
 
 impl<'s> Schedule<'s> {
@@ -120,6 +131,10 @@ impl<'s> Schedule<'s> {
             happenings: nodes,
             past: 0,
             end,
+            most: u64::MAX,
+            halt: None,
+            last: None,
+            missed: Vec::new(),
         }
     }
 
@@ -131,14 +146,20 @@ impl<'s> Schedule<'s> {
     }
 
     /// The steps up to the next event, or as many as are taken at once; `None` at the end of the
-    /// scene.
+    /// scene, or where it is to halt.
     pub fn next_stretch(&mut self) -> Option<Stretch> {
-        if !before(self.now, self.end) {
+        let happens_here = self.coming().is_some_and(|at| same(at, self.now));
+        let halts = self.most == 0 || self.halt.is_some_and(|halt| !before(self.now, halt));
+        if (halts || self.is_over()) && !happens_here {
             return None;
         }
         let target = self.target();
         let mut stretch = Stretch::default();
-        while before(self.now, target) {
+        if happens_here {
+            stretch.kept.extend(self.last);
+        }
+        while before(self.now, target) && self.most > 0 {
+            self.most -= 1;
             let index = stretch.steps.len();
             let (mut step, state) = self.step_towards(target);
             let display = self.display_is_due();
@@ -152,6 +173,10 @@ impl<'s> Schedule<'s> {
                     display,
                 });
             }
+        }
+        if !stretch.steps.is_empty() {
+            let last = stretch.kept.last().copied();
+            self.last = last.filter(|last| last.at.step == self.steps);
         }
         let here = self.now;
         if let Some((at, happenings)) = self.happenings.get(self.past)
@@ -173,6 +198,7 @@ impl<'s> Schedule<'s> {
 
     /// Takes back what was to happen: the clock no longer stops for it.
     pub fn cancel(&mut self, happening: Happening) {
+        self.missed.push(happening.event());
         let coming = self.happenings[self.past..].iter();
         let found = coming.zip(self.past..).find_map(|((_, group), k)| {
             let place = group.iter().position(|&other| other == happening)?;
@@ -200,7 +226,7 @@ impl<'s> Schedule<'s> {
             rest: 0.0,
             time: on_grid as f64 * self.scene.step,
         };
-        for candidate in [Some(self.end), self.coming()] {
+        for candidate in [Some(self.end), self.coming(), self.halt] {
             if let Some(at) = candidate
                 && !before(target, at)
             {
@@ -256,6 +282,10 @@ impl<'s> Schedule<'s> {
             StateRate::EveryStep => true,
             StateRate::PerSecond(rate) => ticks(to.grid, h, rate) > ticks(from.grid, h, rate),
         }
+    }
+
+    pub fn is_over(&self) -> bool {
+        !before(self.now, self.end)
     }
 
     /// Sets the clock back to where a stretch was broken off.
