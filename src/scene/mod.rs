@@ -3,6 +3,7 @@
 //! A [`Scene`] comes only from [`Scene::parse`] and is right in every respect: nothing downstream
 //! checks again. Units are SI and radians; degrees exist only in the file.
 
+mod amend;
 mod body;
 pub mod carried;
 mod edit;
@@ -25,6 +26,7 @@ mod swarm;
 mod table;
 mod warnings;
 
+pub use amend::{Amended, Entry};
 pub use body::{Body, OwnMethod};
 pub use effect::SceneEffect;
 pub(crate) use effect::lasting;
@@ -33,6 +35,7 @@ pub use files::{Enclosure, Folder, Library};
 pub use finding::{Finding, Place, Severity};
 pub use problem::Problems;
 pub use script::Script;
+pub(crate) use table::nearest;
 pub use warnings::{WARNINGS, Warning};
 
 use crate::integrator::Method;

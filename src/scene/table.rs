@@ -173,7 +173,7 @@ impl<'d> Table<'d> {
 }
 
 /// "did you mean `x`?", or some of what there is.
-pub(super) fn nearest(name: &str, known: &[&str]) -> String {
+pub(crate) fn nearest(name: &str, known: &[&str]) -> String {
     /// Longer than this nothing is a slip of the hand, and comparing takes its time.
     const LONGEST: usize = 64;
     /// As many as one reads.
