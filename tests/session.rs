@@ -868,3 +868,69 @@ fn the_page_lists_the_commands() {
     let table = torquescope::session::protocol::table();
     assert!(page.contains(&table), "docs/live.md lacks:\n{table}");
 }
+
+mod any_session {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Lines of every kind, right and wrong, some on what others make.
+    fn line() -> impl Strategy<Value = String> {
+        let number = prop_oneof![Just(0.0), -2.0..2.0_f64, Just(1e300), Just(-1e-300)];
+        prop_oneof![
+            (1..90_u64).prop_map(|n| format!("step {n}")),
+            (1..200_u64).prop_map(|n| format!("back {n}")),
+            (0.0..0.3_f64).prop_map(|t| format!("seek {t}")),
+            (number.clone(), 0.0..0.05_f64)
+                .prop_map(|(x, t)| format!("push plate 3 0.1 0 {x} 0.1 -0.2 for {t}")),
+            number
+                .clone()
+                .prop_map(|x| format!("torque cone 0.1 {x} 0 body")),
+            number.prop_map(|x| format!("spin plate 0.1 0 0.1 0 1 0 {x} body for 0.01")),
+            (0.1..2.0_f64).prop_map(|x| format!("set damping.angular {x}")),
+            (-1.0..1.0_f64).prop_map(|x| format!("set plate.velocity [{x}, 0, 0]")),
+            prop_oneof![
+                Just("again"),
+                Just("reset"),
+                Just("click 3.1 5 0.05  0 -1 0"),
+                Just("effect gravity off"),
+                Just("effect gravity on"),
+                Just("effect damping off"),
+                Just("method taylor"),
+                Just("method cf4"),
+                Just("branch main"),
+                Just("branch branch-1"),
+                Just("break when faster 3"),
+                Just("method dop853 from start"),
+                Just("set cone.mass 2 from start"),
+                Just("state plate"),
+                Just("branches"),
+                Just("step-size 1e-3"),
+                Just("nonsense é"),
+            ]
+            .prop_map(str::to_owned),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+        /// Whatever is said, what one sees is what the text plays back.
+        #[test]
+        fn is_what_its_text_plays_back(lines in proptest::collection::vec(line(), 1..25)) {
+            let (mut console, _, clock) = console();
+            for line in &lines {
+                let answer = say(&mut console, &clock, line);
+                prop_assert!(answer["ok"].is_boolean(), "{line}: {answer}");
+            }
+            let session = console.session();
+            if session.failure().is_none() {
+                let scene = Arc::new(Scene::parse("s", "s", session.text()).unwrap());
+                let mut stated = Stated::of(&scene).unwrap();
+                let mut run = Run::new(scene);
+                let limit = Limit::steps(session.now().step);
+                run.go(limit, &mut stated, &mut Rows::default()).unwrap();
+                prop_assert_eq!(run.fingerprint(), session.fingerprint(), "{:?}", lines);
+            }
+        }
+    }
+}
