@@ -26,5 +26,6 @@ pub mod math;
 #[cfg(feature = "cli")]
 pub mod record;
 pub mod scene;
+pub mod session;
 pub mod sim;
 pub mod trace;

@@ -12,7 +12,7 @@ const LEVELS: [&[&str]; 9] = [
     &["log", "scene", "trace"],
     &["sim"],
     &["cost"],
-    &["record", "live"],
+    &["record", "live", "session"],
 ];
 
 fn level(room: &str) -> usize {

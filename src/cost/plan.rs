@@ -82,7 +82,8 @@ impl Plan {
                     pieces: 1,
                     tolerance,
                 };
-                let stated = Stated::where_none_is_own(scene, usual);
+                let stated = Stated::of(scene);
+                let stated = stated.unwrap_or_else(|| Stated::where_none_is_own(scene, usual));
                 Self::by_method(scene, &reference, stated)
             }
             Stepping::Accuracy(asked) => {
@@ -170,7 +171,7 @@ impl Plan {
     }
 
     /// What chooses as planned.
-    pub fn chooser(&self) -> impl Choose {
+    pub fn chooser(&self) -> impl Choose + use<> {
         let planned = self.intervals.iter();
         Replay(
             planned

@@ -109,6 +109,10 @@ impl Stepper for Run {
     fn boxed_clone(&self) -> Box<dyn Stepper> {
         Box::new(self.clone())
     }
+
+    fn bytes(&self) -> usize {
+        size_of_val(self) + size_of_val(self.bodies.as_slice())
+    }
 }
 
 #[cfg(test)]

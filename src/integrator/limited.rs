@@ -74,4 +74,8 @@ impl Stepper for Limited {
     fn boxed_clone(&self) -> Box<dyn Stepper> {
         Box::new(self.clone())
     }
+
+    fn bytes(&self) -> usize {
+        size_of_val(self) + self.inner.bytes()
+    }
 }

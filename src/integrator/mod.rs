@@ -148,6 +148,11 @@ pub trait Stepper: Send {
     fn work(&self) -> Work;
 
     fn boxed_clone(&self) -> Box<dyn Stepper>;
+
+    /// Bytes it takes: its own, and what it holds elsewhere where that is more than a few.
+    fn bytes(&self) -> usize {
+        size_of_val(self)
+    }
 }
 
 impl Clone for Box<dyn Stepper> {

@@ -90,6 +90,10 @@ impl<W: Walk> Stepper for Run<W> {
     fn boxed_clone(&self) -> Box<dyn Stepper> {
         Box::new(self.clone())
     }
+
+    fn bytes(&self) -> usize {
+        size_of_val(self) + size_of_val(self.bodies.as_slice())
+    }
 }
 
 impl<W: Walk> Walker<W> {

@@ -60,4 +60,8 @@ impl Stepper for Pieces {
     fn boxed_clone(&self) -> Box<dyn Stepper> {
         Box::new(self.clone())
     }
+
+    fn bytes(&self) -> usize {
+        size_of_val(self) + self.inner.bytes()
+    }
 }

@@ -4,6 +4,7 @@
 //! what is parsed is what is stored, and every byte knows where it came from: a problem in it is told
 //! at the argument or the line that wrote it.
 
+use super::amend::Entry;
 use super::keys::SCENE;
 use super::table::{nearest, shortened};
 use crate::effect::EFFECTS;
@@ -135,6 +136,33 @@ impl Text {
         // What stands before it are keys and brackets.
         let at = new.rfind(value).unwrap_or(0);
         self.splice_value(range, &new, at, from);
+        Ok(())
+    }
+
+    /// Adds a table at the end of its list.
+    pub fn add(&mut self, entry: &Entry, from: From) -> Result<(), String> {
+        let document = parse(&self.text)?;
+        let list = entry.list();
+        let end = self.text.len();
+        let (at, new) = match document.get_ref().get(list) {
+            None => (end, entry.written(false)),
+            Some(node) => {
+                let Some(items) = node.get_ref().as_array() else {
+                    return Err(format!("`{list}` is no list of tables"));
+                };
+                let braces = entry.written(true);
+                match items.iter().last() {
+                    None => (node.span().start + 1, braces),
+                    Some(last) if self.text[last.span()].starts_with('{') => {
+                        (last.span().end, format!(", {braces}"))
+                    }
+                    Some(_) => (end, entry.written(false)),
+                }
+            }
+        };
+        let open = at == end && !self.text.is_empty() && !self.text.ends_with('\n');
+        let new = if open { format!("\n{new}") } else { new };
+        self.splice(at..at, &new, from);
         Ok(())
     }
 
@@ -302,6 +330,25 @@ fn expand(top: &DeTable<'_>, path: &[String], value: &str) -> Result<Vec<String>
         shortened(&all),
         nearest(first, &known)
     ))
+}
+
+/// A path as it is written out in full.
+pub(super) fn full_path(top: &DeTable<'_>, path: &str, value: &str) -> Result<Vec<String>, String> {
+    expand(top, &segments(path)?, value)
+}
+
+/// The reverse.
+pub(super) fn written_path(path: &[String]) -> String {
+    dotted(path)
+}
+
+/// A table of a list by its name, or by its place.
+pub(super) fn table_named<'t, 'd>(
+    top: &'t DeTable<'d>,
+    list: &str,
+    name: &str,
+) -> Option<&'t DeTable<'d>> {
+    find(named(top, list)?, name)?.get_ref().as_table()
 }
 
 /// The number that an effect of several is called after: the one that the scene has; damping's is
@@ -516,7 +563,7 @@ fn dotted(path: &[String]) -> String {
     keys.join(".")
 }
 
-fn key(name: &str) -> String {
+pub(super) fn key(name: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     match name.chars().all(bare) {
         true => name.to_owned(),

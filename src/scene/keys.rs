@@ -488,7 +488,7 @@ pub static POINT: Keys = Keys {
 
 pub static EVENT: Keys = Keys {
     name: "[[event]]",
-    about: "Something done at an exact time: one of force, impulse, torque, angular_impulse, click, set, switch, note.",
+    about: "Something done at an exact time: one of force, impulse, torque, angular_impulse, click, set, switch, method, note.",
     keys: &[
         key("name", Takes::Name, "what paths and the log call it"),
         key("at", Takes::NotNegative("s"), "when").required(),
@@ -539,6 +539,17 @@ pub static EVENT: Keys = Keys {
         ),
         key("switch", Takes::Table(&SWITCH), "an effect on or off"),
         key(
+            "method",
+            Takes::NameOf(Registry::Methods),
+            "another method from here on, for all bodies that have none of their own; not with accuracy",
+        ),
+        key(
+            "tolerance",
+            Takes::Positive("relative error a step"),
+            "of that method, where it chooses its own steps",
+        )
+        .default("1e-12"),
+        key(
             "note",
             Takes::Text,
             "a line in the log and a mark on the timeline",
@@ -554,6 +565,12 @@ pub static EVENT: Keys = Keys {
             "axes of the vector and of the point",
         )
         .default("\"world\""),
+        key(
+            "unforeseen",
+            Takes::Switch,
+            "no method with steps of its own shortens them for it: whatever is before it stays, bit by bit, as it would be without",
+        )
+        .default("false"),
     ],
     ..PLAIN
 };

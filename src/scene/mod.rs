@@ -3,6 +3,7 @@
 //! A [`Scene`] comes only from [`Scene::parse`] and is right in every respect: nothing downstream
 //! checks again. Units are SI and radians; degrees exist only in the file.
 
+mod amend;
 mod body;
 pub mod carried;
 mod edit;
@@ -25,6 +26,7 @@ mod swarm;
 mod table;
 mod warnings;
 
+pub use amend::{Amended, Entry};
 pub use body::{Body, OwnMethod};
 pub use effect::SceneEffect;
 pub(crate) use effect::lasting;

@@ -6,6 +6,7 @@ use super::table::Table;
 use super::{Action, Body, Scene, Stepping, Target};
 use crate::body::InertialBlock;
 use crate::effect::Load;
+use crate::integrator::Method;
 use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
 
@@ -50,13 +51,68 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
     let Stepping::Method { method, .. } = scene.stepping else {
         return Vec::new();
     };
-    let mut found = Vec::new();
     let times = Times::of(scene);
     let events = lasting_events(scene, &times);
+    let mut found = Vec::new();
+    for phase in phases(scene, method) {
+        // A body with a method of its own is told once.
+        let told = |new: &Unpaired| found.iter().any(|old: &Unpaired| old.why == new.why);
+        let mut news = unpaired_in(scene, &phase, &times, &events);
+        news.retain(|new| !told(new));
+        found.append(&mut news);
+    }
+    found
+}
+
+/// From when to when (s) a method is the usual one.
+struct Phase {
+    from: f64,
+    until: f64,
+    method: &'static dyn Method,
+    /// The event that made it so.
+    by: Option<usize>,
+}
+
+/// The scene's method until the first event that changes it, and so on.
+fn phases(scene: &Scene, method: &'static dyn Method) -> Vec<Phase> {
+    let events = scene.events.iter().enumerate();
+    let mut changes: Vec<(usize, f64, &'static dyn Method)> = events
+        .filter_map(|(k, event)| match event.action {
+            Action::Method(own) => Some((k, event.at, own.method)),
+            _ => None,
+        })
+        .collect();
+    changes.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let mut phases = vec![Phase {
+        from: 0.0,
+        until: f64::INFINITY,
+        method,
+        by: None,
+    }];
+    for (k, at, method) in changes {
+        phases
+            .last_mut()
+            .into_iter()
+            .for_each(|last| last.until = at);
+        phases.push(Phase {
+            from: at,
+            until: f64::INFINITY,
+            method,
+            by: Some(k),
+        });
+    }
+    // One that is changed at once steps nothing.
+    phases.retain(|phase| phase.from < phase.until);
+    phases
+}
+
+fn unpaired_in(scene: &Scene, phase: &Phase, times: &Times, events: &Lasting) -> Vec<Unpaired> {
+    let mut found = Vec::new();
+    let sets = times.during(phase.from, phase.until);
     // Of bodies alike one after another, as a swarm has them, what is true of one is true of all.
     let mut before: Option<(usize, bool)> = None;
     for (k, body) in scene.bodies.iter().enumerate() {
-        let info = body.method.map_or(method, |own| own.method).info();
+        let info = body.method.map_or(phase.method, |own| own.method).info();
         if info.takes_every_load() {
             continue;
         }
@@ -73,14 +129,21 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
         block.set(0, member.inertial);
         let refuses = |load: &Load| info.refuses(load, &block);
         let under = |on: &[bool]| lasting(scene, k, &[member], on);
-        let refused = times.sets.iter().find_map(|set| {
+        let refused = sets.iter().find_map(|&set| {
+            let set = &times.sets[set];
             let refusal = refuses(&under(&set.on))?;
             Some((set.by, refusal))
         });
         if let Some((by, refusal)) = refused {
+            // Of a switch and a method the later one is where it went wrong.
+            let at = |event: Option<usize>| event.map_or(-1.0, |k| scene.events[k].at);
+            let (by, after) = match at(phase.by) > at(by) {
+                true => (phase.by, "with that method, "),
+                false => (by, "after a switch, "),
+            };
             let why = match by {
                 None => format!("{}: {refusal}", body.name),
-                Some(_) => format!("after a switch, {}: {refusal}", body.name),
+                Some(_) => format!("{after}{}: {refusal}", body.name),
             };
             found.push(Unpaired {
                 why,
@@ -93,6 +156,10 @@ fn unpaired(scene: &Scene) -> Vec<Unpaired> {
         let own = own.into_iter().flatten();
         for &(index, set) in own.chain(&events.clicks) {
             let event = &scene.events[index];
+            let over = event.at + event.action.lasts();
+            if !sets.contains(&set) || event.at >= phase.until || over <= phase.from {
+                continue;
+            }
             let event = match &event.action {
                 // Wherever it hits: not at the centre of mass, where a force turns nothing.
                 Action::Click(click) => &event.on(k, click.at(Vector3::x())),
@@ -145,6 +212,19 @@ struct Times {
 }
 
 impl Times {
+    /// The sets of effects between two times (s), each once.
+    fn during(&self, from: f64, until: f64) -> Vec<usize> {
+        let begins = self.periods.partition_point(|(t, _)| *t <= from);
+        let during = self.periods[begins.saturating_sub(1)..].iter();
+        let mut sets: Vec<usize> = during
+            .take_while(|(t, _)| *t < until)
+            .map(|(_, set)| *set)
+            .collect();
+        sets.sort_unstable();
+        sets.dedup();
+        sets
+    }
+
     fn of(scene: &Scene) -> Self {
         let events = scene.events.iter().enumerate();
         let mut switches: Vec<(usize, f64, usize, bool)> = events

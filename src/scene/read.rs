@@ -170,6 +170,7 @@ fn read(
         bodies: &bodies,
         effects: effects.as_deref(),
         clock: event::Clock { duration, step },
+        by_accuracy: matches!(stepping, Some(Stepping::Accuracy(_))),
     };
     let events = event::read_all(&events, &context, problems);
     // What it says is looked at where its values are put in.

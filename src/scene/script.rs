@@ -1,6 +1,7 @@
 //! A scene's text, from a file or from the program itself; what is to be changed in it; and the scenes that
 //! come of it: one, or one for each value of its `[sweep]`.
 
+use super::amend::Entry;
 use super::carried;
 use super::edit::{self, From, Origin, Text, quoted};
 use super::finding::{Finding, Severity};
@@ -39,6 +40,8 @@ enum Change {
     Drop(&'static [&'static str]),
     /// The scene ends there, s.
     Until(f64),
+    /// A table is added.
+    Add(Entry),
 }
 
 /// Recordings of one sweep at most: as many as one can find one's way among.
@@ -181,11 +184,29 @@ impl Script {
         self.changes.push((Change::Until(end), argument.to_owned()));
     }
 
+    /// Adds an event or an effect behind those there are.
+    pub fn add(&mut self, entry: Entry, argument: &str) {
+        self.changes.push((Change::Add(entry), argument.to_owned()));
+    }
+
+    /// Leaves its sweep out: the scene as it stands.
+    pub fn drop_sweep(&mut self) {
+        self.changes.push((Change::Drop(&["sweep"]), String::new()));
+    }
+
+    /// The same with all its changes done: the text that they came to, and the files that it names.
+    #[must_use]
+    pub fn settled(mut self, text: &str, files: impl Library + 'static) -> Self {
+        text.clone_into(&mut self.source);
+        self.changes.clear();
+        self.with_files(files)
+    }
+
     /// What tells the scene from the file's, in words.
     fn label(&self) -> Option<String> {
         let changes = self.changes.iter().filter_map(|(change, _)| match change {
             Change::Set { path, value } => Some(format!("{path} = {}", one_line(value))),
-            Change::Drop(_) => None,
+            Change::Drop(_) | Change::Add(_) => None,
             Change::Until(end) => Some(format!("until {end} s")),
         });
         let all: Vec<String> = self.variant.iter().cloned().chain(changes).collect();
@@ -234,7 +255,7 @@ impl Script {
         Problems::new(&self.file, &self.source)
     }
 
-    fn edited(&self) -> Result<Text, Problems> {
+    pub(super) fn edited(&self) -> Result<Text, Problems> {
         let mut text = Text::new(&self.source);
         let mut problems = self.problems();
         let too_large = self.source.len() as u64 > LARGEST;
@@ -246,6 +267,7 @@ impl Script {
         for (k, (change, argument)) in self.changes.iter().enumerate() {
             let done = match change {
                 Change::Set { path, value } => text.set(path, value, From::Argument(k)),
+                Change::Add(entry) => text.add(entry, From::Argument(k)),
                 Change::Drop(paths) => paths.iter().try_for_each(|path| text.drop(path)),
                 Change::Until(until) => {
                     end = Some(*until);
@@ -481,13 +503,13 @@ fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn float(x: f64) -> String {
+pub(super) fn float(x: f64) -> String {
     // Rust writes what TOML reads: 1.0, 1e-9, inf, NaN but for its case.
     format!("{x:?}").to_lowercase()
 }
 
 /// A value as TOML has it; a bare word is a text.
-fn toml_value(value: &str) -> Result<String, String> {
+pub(super) fn toml_value(value: &str) -> Result<String, String> {
     let Err(error) = DeValue::parse(value) else {
         return Ok(value.to_owned());
     };

@@ -2,7 +2,7 @@
 
 use crate::body::StateBlock;
 use crate::integrator::{Interval, Method, Pieces, Stepper};
-use crate::scene::{Body, Scene, Stepping};
+use crate::scene::{Action, Body, OwnMethod, Scene, Stepping};
 use std::ops::Range;
 
 /// A way through an interval.
@@ -53,6 +53,8 @@ pub struct Stated {
     usual: Choice,
     /// By body: those of bodies that have their own.
     own: Vec<Option<Choice>>,
+    /// What takes the usual one's place, from when on (s), in order.
+    later: Vec<(f64, Choice)>,
 }
 
 impl Stated {
@@ -61,6 +63,7 @@ impl Stated {
         Self {
             usual,
             own: Vec::new(),
+            later: Vec::new(),
         }
     }
 
@@ -76,6 +79,7 @@ impl Stated {
         Self {
             usual,
             own: scene.bodies.iter().map(own).collect(),
+            later: Vec::new(),
         }
     }
 
@@ -88,7 +92,9 @@ impl Stated {
                     pieces: 1,
                     tolerance,
                 };
-                Some(Self::where_none_is_own(scene, usual))
+                let mut stated = Self::where_none_is_own(scene, usual);
+                stated.later = later(scene);
+                Some(stated)
             }
             Stepping::Accuracy(_) => None,
         }
@@ -99,6 +105,37 @@ impl Choose for Stated {
     /// Bodies that go together have one method.
     fn choose(&mut self, setting: &Setting<'_>) -> Choice {
         let own = self.own.get(setting.members.start).copied().flatten();
-        own.unwrap_or(self.usual)
+        own.unwrap_or_else(|| self.usual_at(setting.from))
     }
+}
+
+impl Stated {
+    /// The usual way at a time, s.
+    fn usual_at(&self, t: f64) -> Choice {
+        let gone = self.later.partition_point(|(from, _)| *from <= t);
+        match gone.checked_sub(1) {
+            Some(last) => self.later[last].1,
+            None => self.usual,
+        }
+    }
+}
+
+/// The methods that events change to, by when.
+fn later(scene: &Scene) -> Vec<(f64, Choice)> {
+    // The clock takes two times for one instant where they are no farther apart (`schedule`).
+    let slack = |t: f64| (4.0 * f64::EPSILON * t).max(1e-9 * scene.step);
+    let changes = scene.events.iter().filter_map(|event| match event.action {
+        Action::Method(OwnMethod { method, tolerance }) => Some((
+            event.at - slack(event.at),
+            Choice {
+                method,
+                pieces: 1,
+                tolerance,
+            },
+        )),
+        _ => None,
+    });
+    let mut changes: Vec<(f64, Choice)> = changes.collect();
+    changes.sort_by(|(t, _), (u, _)| t.total_cmp(u));
+    changes
 }

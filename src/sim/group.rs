@@ -238,6 +238,34 @@ impl Group {
         self.take(steps);
     }
 
+    /// Lets go of the last stretch: what is kept of it, and how to take it again.
+    pub fn forget(&mut self) {
+        // What is still on its way to be recorded is kept there.
+        self.kept = Arc::default();
+        self.room.clear();
+        self.before = None;
+    }
+
+    /// Bytes it takes where nothing is kept.
+    pub fn bytes(&self) -> usize {
+        let stepper = self.stepper.as_ref().map_or(0, |stepper| stepper.bytes());
+        let effects = self.load.effects().count() * size_of::<(std::sync::Arc<str>, Term)>();
+        // The stepper has a load of its own.
+        size_of::<Self>() + stepper + 2 * effects
+    }
+
+    /// What turns a body, by its name: all that is active.
+    pub fn torques(&self, body: usize, t: f64) -> Vec<(String, Vector3<f64>)> {
+        let lane = body - self.members.start;
+        let mut names = self.load.names();
+        let mut seen = std::collections::HashSet::new();
+        names.retain(|name| name != "speed_limit" && seen.insert(name.clone()));
+        let parts = Parts::of(&self.load, t, &self.inertial, &self.state);
+        let (inertial, state) = (self.inertial.get(lane), self.state.get(lane));
+        let torques = parts.torques(&names, (&self.load, lane), &inertial, &state);
+        names.into_iter().zip(torques).collect()
+    }
+
     /// Back to before the last stretch.
     fn rewind(&mut self) {
         self.stepper.clone_from(&self.before);

@@ -2,6 +2,7 @@
 
 mod choose;
 mod group;
+mod resume;
 mod schedule;
 mod script;
 mod sizes;
@@ -10,6 +11,7 @@ mod truth;
 mod watch;
 
 pub use choose::{Choice, Choose, Setting, Stated};
+pub use resume::{Checkpoint, Limit, Run};
 pub use sizes::Sizes;
 pub use sources::GYROSCOPIC;
 pub use watch::{Drifts, Warning};
@@ -183,7 +185,7 @@ impl<'s> Simulation<'s> {
         };
         if scene.record.streams.contains("sources") {
             let outside = simulation.outside_swarms;
-            sources::tell_apart(scene, &mut simulation.subjects[..outside]);
+            sources::tell_apart(scene, &mut simulation.subjects[..outside], &[]);
         }
         for group in &mut simulation.groups {
             group.watch(&simulation.subjects[group.members.clone()]);
@@ -305,6 +307,18 @@ impl<'s> Simulation<'s> {
         outcome: &mut Outcome,
         sink: &mut dyn Sink,
     ) -> Result<(), SimError> {
+        self.open(schedule, chooser, outcome, sink)?;
+        self.go_on(schedule, chooser, outcome, sink)
+    }
+
+    /// What happens at the start.
+    fn open(
+        &mut self,
+        schedule: &mut Schedule<'_>,
+        chooser: &mut dyn Choose,
+        outcome: &mut Outcome,
+        sink: &mut dyn Sink,
+    ) -> Result<(), SimError> {
         let start = schedule.now();
         self.write_notes(&[], start, start.time, sink)?;
         let applied = self.apply(start, &script::at_start(self.scene), schedule);
@@ -316,6 +330,17 @@ impl<'s> Simulation<'s> {
         let samples = self.samples_outside_swarms(|group| group.samples(start.time));
         self.deliver(0, start, (samples, self.scene.record.streams), sink)?;
         self.deliver_fingerprint(start, sink)?;
+        Ok(())
+    }
+
+    /// Stretch by stretch, to the end of the scene or where the clock is to halt.
+    fn go_on(
+        &mut self,
+        schedule: &mut Schedule<'_>,
+        chooser: &mut dyn Choose,
+        outcome: &mut Outcome,
+        sink: &mut dyn Sink,
+    ) -> Result<(), SimError> {
         loop {
             let first = schedule.now();
             if self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
@@ -323,10 +348,16 @@ impl<'s> Simulation<'s> {
                 return Err(SimError::Stopped { time, step });
             }
             let Some(stretch) = schedule.next_stretch() else {
-                self.write_notes(&[], first, f64::INFINITY, sink)?;
+                if schedule.is_over() {
+                    self.write_notes(&[], first, f64::INFINITY, sink)?;
+                }
                 return Ok(());
             };
-            let lost = self.stretch(&stretch, first, sink)?;
+            let lost = match stretch.steps.is_empty() {
+                // Something happens where it stands.
+                true => None,
+                false => self.stretch(&stretch, first, sink)?,
+            };
             let until = lost.map_or(schedule.now(), |(at, _)| at);
             self.write_notes(&stretch.steps, first, until.time, sink)?;
             if let Some((at, body)) = lost {
@@ -654,6 +685,8 @@ impl<'s> Simulation<'s> {
                 self.acting.on[*effect] = *on;
                 (None, Some(Done::Switched))
             }
+            // What it is the chooser knows.
+            (Action::Method(_), _) => (None, Some(Done::Changed)),
             (Action::Set(change), Target::Body(body)) => {
                 let body = *body;
                 let group = &mut self.groups[self.home[body]];
@@ -778,6 +811,7 @@ impl<'s> Simulation<'s> {
                     script::set_note(event, named(*body))
                 }
                 Done::Switched => script::switch_note(event, self.scene),
+                Done::Changed => script::method_note(event),
                 Done::Missed => script::miss_note(event),
             };
             sink.note(now, &note)?;
@@ -792,7 +826,7 @@ impl<'s> Simulation<'s> {
             match done {
                 Done::Begun(lasting) => bodies.push(lasting.body),
                 Done::Ended(body) | Done::Struck(body, _) | Done::Set(body) => bodies.push(*body),
-                Done::Switched => bodies.extend(0..self.subjects.len()),
+                Done::Switched | Done::Changed => bodies.extend(0..self.subjects.len()),
                 Done::Missed => {}
             }
         }

@@ -3,13 +3,17 @@
 //! A node is a whole number of steps and a remainder, so time never drifts by adding steps up:
 //! `t = k h + r`. A step that an event divides is taken in two pieces.
 
+mod parked;
+
+pub use parked::{Parked, Position};
+
 use super::script::Happening;
 use crate::integrator::Step;
 use crate::scene::{Rate, Scene};
 use crate::trace::{Instant, StreamSet};
 
 /// A place on the clock.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Node {
     /// Whole steps.
     grid: u64,
@@ -87,8 +91,6 @@ const SHORTEST_STRETCH: u64 = 64;
 struct Band {
     rate: Rate,
     streams: StreamSet,
-    /// Sampling instants that have been delivered.
-    shown: f64,
 }
 
 pub struct Schedule<'s> {
@@ -102,6 +104,13 @@ pub struct Schedule<'s> {
     /// How many of them are past.
     past: usize,
     end: Node,
+    /// Steps that may be taken still, and where it stops.
+    most: u64,
+    halt: Option<Node>,
+    /// What was kept of the last step.
+    last: Option<Kept>,
+    /// Events that hit nothing, so that their ends were taken back.
+    missed: Vec<usize>,
 }
 
 impl<'s> Schedule<'s> {
@@ -119,12 +128,6 @@ impl<'s> Schedule<'s> {
             group.sort_by_key(|happening| matches!(happening, Happening::Begins(_)));
         }
         nodes.retain(|(at, _)| !before(end, *at));
-        let bands = scene.record.bands().into_iter();
-        let bands = bands.map(|(rate, streams)| Band {
-            rate,
-            streams,
-            shown: 0.0,
-        });
         Self {
             scene,
             now: Node {
@@ -133,10 +136,14 @@ impl<'s> Schedule<'s> {
                 time: 0.0,
             },
             steps: 0,
-            bands: bands.collect(),
+            bands: bands(scene),
             happenings: nodes,
             past: 0,
             end,
+            most: u64::MAX,
+            halt: None,
+            last: None,
+            missed: Vec::new(),
         }
     }
 
@@ -148,17 +155,24 @@ impl<'s> Schedule<'s> {
     }
 
     /// The steps up to the next event, or as many as are taken at once; `None` at the end of the
-    /// scene.
+    /// scene, or where it is to halt.
     pub fn next_stretch(&mut self) -> Option<Stretch> {
-        if !before(self.now, self.end) {
+        let happens_here = self.coming().is_some_and(|at| same(at, self.now));
+        let halts = self.most == 0 || self.halt.is_some_and(|halt| !before(self.now, halt));
+        if (halts || self.is_over()) && !happens_here {
             return None;
         }
         let target = self.target();
         let mut stretch = Stretch::default();
-        while before(self.now, target) {
+        if happens_here {
+            stretch.kept.extend(self.last);
+        }
+        while before(self.now, target) && self.most > 0 {
+            self.most -= 1;
             let index = stretch.steps.len();
+            let from = self.now;
             let (mut step, state) = self.step_towards(target);
-            let (display, due) = self.streams_due();
+            let (display, due) = self.streams_due(from);
             step.keep = state || display || !due.is_empty();
             stretch.steps.push(step);
             if step.keep {
@@ -170,6 +184,10 @@ impl<'s> Schedule<'s> {
                     due,
                 });
             }
+        }
+        if !stretch.steps.is_empty() {
+            let last = stretch.kept.last().copied();
+            self.last = last.filter(|last| last.at.step == self.steps);
         }
         let here = self.now;
         if let Some((at, happenings)) = self.happenings.get(self.past)
@@ -191,6 +209,7 @@ impl<'s> Schedule<'s> {
 
     /// Takes back what was to happen: the clock no longer stops for it.
     pub fn cancel(&mut self, happening: Happening) {
+        self.missed.push(happening.event());
         let coming = self.happenings[self.past..].iter();
         let found = coming.zip(self.past..).find_map(|((_, group), k)| {
             let place = group.iter().position(|&other| other == happening)?;
@@ -218,7 +237,7 @@ impl<'s> Schedule<'s> {
             rest: 0.0,
             time: on_grid as f64 * self.scene.step,
         };
-        for candidate in [Some(self.end), self.coming()] {
+        for candidate in [Some(self.end), self.coming(), self.halt] {
             if let Some(at) = candidate
                 && !before(target, at)
             {
@@ -256,21 +275,17 @@ impl<'s> Schedule<'s> {
         (step, state)
     }
 
-    /// Whether the display rate is due here, and which streams; counts the instant as shown.
-    fn streams_due(&mut self) -> (bool, StreamSet) {
+    /// Whether the display rate is due at the end of a step, and which streams.
+    fn streams_due(&self, from: Node) -> (bool, StreamSet) {
         let (here, h) = (self.now, self.scene.step);
         let ended = !before(here, self.end);
         let (mut display, mut due) = (false, StreamSet::none());
-        for (k, band) in self.bands.iter_mut().enumerate() {
+        for (k, band) in self.bands.iter().enumerate() {
             let now = match band.rate {
                 Rate::EveryStep => true,
                 Rate::PerSecond(rate) => {
-                    let ticks = ticks(here.grid, h, rate);
-                    let now = here.rest == 0.0 && ticks > band.shown;
-                    if now {
-                        band.shown = ticks;
-                    }
-                    now
+                    let is_whole = here.rest == 0.0;
+                    is_whole && ticks(here.grid, h, rate) > ticks(from.grid, h, rate)
                 }
             };
             if now || ended {
@@ -290,11 +305,22 @@ impl<'s> Schedule<'s> {
         }
     }
 
+    pub fn is_over(&self) -> bool {
+        !before(self.now, self.end)
+    }
+
     /// Sets the clock back to where a stretch was broken off.
     pub fn stop_at(&mut self, at: Instant) {
         self.steps = at.step;
         self.now.time = at.time;
     }
+}
+
+fn bands(scene: &Scene) -> Vec<Band> {
+    let bands = scene.record.bands().into_iter();
+    bands
+        .map(|(rate, streams)| Band { rate, streams })
+        .collect()
 }
 
 /// A remainder below this part of a step is rounding in `t/h` (relative 2⁻⁵³, so a few units of

@@ -74,7 +74,7 @@ pub fn notes(scene: &Scene) -> Vec<(f64, Note)> {
 }
 
 /// What acts besides the bodies' own inertia.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Acting {
     /// Which of the scene's effects are on, in their order.
     pub on: Vec<bool>,
@@ -101,19 +101,24 @@ impl Acting {
     }
 
     /// Whether a happening is known to touch one of these bodies. Whom a ray will hit is not known
-    /// before.
+    /// before, nor what is unforeseen.
     pub fn touches(&self, scene: &Scene, happening: Happening, bodies: &Range<usize>) -> bool {
         let index = happening.event();
-        match &scene.events[index].target {
+        let event = &scene.events[index];
+        let acts = || {
+            let acting = self.events.iter().find(|acting| acting.index == index);
+            acting.is_some_and(|acting| bodies.contains(&acting.body))
+        };
+        if event.unforeseen {
+            return matches!(happening, Happening::Ends(_)) && acts();
+        }
+        match &event.target {
             Target::Body(body) => bodies.contains(body),
             Target::All => true,
             Target::Log(_) => false,
             Target::Hit(_) => match happening {
                 Happening::Begins(_) => false,
-                Happening::Ends(_) => {
-                    let hit = self.events.iter().find(|acting| acting.index == index);
-                    hit.is_some_and(|acting| bodies.contains(&acting.body))
-                }
+                Happening::Ends(_) => acts(),
             },
         }
     }
@@ -135,6 +140,8 @@ pub enum Done {
     Struck(usize, Jump),
     Set(usize),
     Switched,
+    /// Another method from here on.
+    Changed,
     /// A ray that hit nothing.
     Missed,
 }
@@ -258,6 +265,14 @@ pub fn switch_note(event: &Event, scene: &Scene) -> Note {
         _ => called(event),
     };
     remark(text)
+}
+
+pub fn method_note(event: &Event) -> Note {
+    let by = match &event.action {
+        Action::Method(own) => own.method.info().name,
+        _ => "",
+    };
+    remark(format!("{}: {by} from here on", called(event)))
 }
 
 pub fn miss_note(event: &Event) -> Note {

@@ -17,8 +17,8 @@ use nalgebra::Vector3;
 /// The model's own term, which of a fast body is many times what is applied.
 pub const GYROSCOPIC: &str = "gyroscopic";
 
-/// Names every source of torque on each body; none where one says all there is to say.
-pub fn tell_apart(scene: &Scene, subjects: &mut [Subject]) {
+/// Names every source of torque on each body, and some that are expected; none where one says all there is to say.
+pub fn tell_apart(scene: &Scene, subjects: &mut [Subject], expected: &[&str]) {
     for (k, (subject, body)) in subjects.iter_mut().zip(&scene.bodies).enumerate() {
         let member = body.member(0);
         let mut block = InertialBlock::default();
@@ -49,10 +49,16 @@ pub fn tell_apart(scene: &Scene, subjects: &mut [Subject]) {
                 | Action::AngularImpulse { .. }
                 | Action::Set(_)
                 | Action::Switch { .. }
+                | Action::Method(_)
                 | Action::Note(_) => continue,
             };
             if !names.iter().any(|known| known == name) {
                 names.push(name.to_owned());
+            }
+        }
+        for name in expected {
+            if !names.iter().any(|known| known == name) {
+                names.push((*name).to_owned());
             }
         }
         if names.len() > 1 {

@@ -105,8 +105,8 @@ pub const STREAMS: &[Stream] = &[
     },
 ];
 
-/// A choice of streams.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A choice of streams; by default none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StreamSet(u32);
 
 impl StreamSet {

@@ -1,6 +1,7 @@
 //! `[[event]]`: what happens, to which body, and when.
 
 mod click;
+mod method;
 mod note;
 mod push;
 mod read;
@@ -11,6 +12,7 @@ pub use click::Click;
 pub(super) use read::{Clock, Context, read_all};
 pub use set::Change;
 
+use super::body::OwnMethod;
 use crate::body::Inertial;
 use crate::effect::{Couple, Effect, Frame, Profile, Pulse, Pulsed, Push, Term};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -26,6 +28,8 @@ pub struct Event {
     pub entry: usize,
     /// s.
     pub at: f64,
+    /// Whether no method looks ahead to it: nothing before it depends on its coming.
+    pub unforeseen: bool,
     pub target: Target,
     pub action: Action,
 }
@@ -71,6 +75,8 @@ pub enum Action {
     Set(Change),
     /// An effect of the scene, by its index, on or off.
     Switch { effect: usize, on: bool },
+    /// Another method from here on, for all bodies that have none of their own.
+    Method(OwnMethod),
     /// A line in the log.
     Note(Arc<str>),
 }
@@ -86,6 +92,7 @@ impl Action {
             Self::Click(_) => "click",
             Self::Set(_) => "set",
             Self::Switch { .. } => "switch",
+            Self::Method(_) => "method",
             Self::Note(_) => "note",
         }
     }

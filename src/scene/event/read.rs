@@ -3,7 +3,7 @@
 use super::super::body::{self, Bodies};
 use super::super::problem::Problems;
 use super::super::table::{Node, Table, nearest};
-use super::{Action, Event, Target, click, note, push, set, switch};
+use super::{Action, Event, Target, click, method, note, push, set, switch};
 use crate::effect::{PROFILES, Profile};
 use crate::scene::SceneEffect;
 use std::collections::HashSet;
@@ -22,6 +22,8 @@ pub struct Context<'a> {
     /// `None` where one of them is wrong: that has been told.
     pub effects: Option<&'a [SceneEffect]>,
     pub clock: Clock,
+    /// Whether the scene states an accuracy, so that it names no methods.
+    pub by_accuracy: bool,
 }
 
 /// One event being read, all but its times.
@@ -42,7 +44,7 @@ struct Kind {
     read: fn(Reading<'_, '_>, &mut Problems) -> Option<(Target, Action)>,
 }
 
-const KINDS: [Kind; 8] = [
+const KINDS: [Kind; 9] = [
     Kind {
         key: "force",
         keys: &["body", "frame", "point", "for", "profile"],
@@ -79,6 +81,11 @@ const KINDS: [Kind; 8] = [
         read: switch::read,
     },
     Kind {
+        key: "method",
+        keys: &["tolerance"],
+        read: method::read,
+    },
+    Kind {
         key: "note",
         keys: &["body"],
         read: note::read,
@@ -86,7 +93,7 @@ const KINDS: [Kind; 8] = [
 ];
 
 /// Keys that belong to some kinds of event.
-const OF_SOME: [&str; 5] = ["for", "profile", "body", "frame", "point"];
+const OF_SOME: [&str; 6] = ["for", "profile", "body", "frame", "point", "tolerance"];
 
 /// Events of a scene at most, repeats counted: each is a stop of the clock and a line of the log.
 const MOST: usize = 100_000;
@@ -105,6 +112,8 @@ pub fn read_all(
     for (entry, table) in tables.iter().enumerate() {
         let name = name(table, &mut names, problems);
         let times = times(table, context.clock, &mut room, problems);
+        let unforeseen = table.get("unforeseen");
+        let unforeseen = unforeseen.map(|node| node.boolean(problems));
         let done = read(table, times.as_deref(), context, problems);
         table.check_keys(problems);
         let (Some(times), Some((target, action))) = (times, done) else {
@@ -114,6 +123,7 @@ pub fn read_all(
             name: name.clone(),
             entry,
             at,
+            unforeseen: unforeseen.flatten().unwrap_or(false),
             target: target.clone(),
             action: action.clone(),
         };

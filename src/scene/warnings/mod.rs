@@ -379,7 +379,11 @@ fn struck(event: &Event, body: &Alone, state: &State) -> Option<Wrench> {
                 torque: torque.direction(body.q_pb),
             }
         }
-        Action::Click(_) | Action::Set(_) | Action::Switch { .. } | Action::Note(_) => return None,
+        Action::Click(_)
+        | Action::Set(_)
+        | Action::Switch { .. }
+        | Action::Method(_)
+        | Action::Note(_) => return None,
     };
     Some(term.wrench(state))
 }
@@ -395,6 +399,6 @@ fn is_zero(event: &Event) -> bool {
             *v == Vector3::zeros()
         }
         Action::Click(click) => click.force == 0.0,
-        Action::Set(_) | Action::Switch { .. } | Action::Note(_) => false,
+        Action::Set(_) | Action::Switch { .. } | Action::Method(_) | Action::Note(_) => false,
     }
 }
