@@ -289,6 +289,72 @@ fn a_file_that_is_removed_while_it_is_written_is_there_in_the_end() {
     assert_eq!(flaw(&folder.path().join("s.rrd")), None);
 }
 
+/// A good recording is not replaced by one of nothing.
+#[test]
+fn a_signal_while_planning_leaves_what_there_is() {
+    let folder = folder_with(SHORT);
+    assert!(output(folder.path(), &["run", "s.toml"]).status.success());
+    let good = std::fs::read(folder.path().join("s.rrd")).unwrap();
+    // A plan of many bodies takes seconds.
+    let body = |k: usize| {
+        format!(
+            "[[body]]\nname = \"b{k}\"\nmass = 1.0\ninertia = [1, 2, 2.5]\nangular_velocity = [1, 0.{k}, 0]\n"
+        )
+    };
+    let bodies: String = (1..200).map(body).collect();
+    let slow = format!(
+        "duration = 50.0\n[stepping]\naccuracy = 1e-11\n[effects]\ngravity = [0, -9.81, 0]\ngyroscopic = true\n{bodies}"
+    );
+    std::fs::write(folder.path().join("slow.toml"), slow).unwrap();
+    for (name, code) in [("-INT", 130), ("-TERM", 143)] {
+        let arguments = ["run", "slow.toml", "--out", "s.rrd", "--force"];
+        let child = torquescope(folder.path(), &arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // It listens to signals where its status says so.
+        let status = format!("/proc/{}/status", child.id());
+        let catches = || {
+            let status = std::fs::read_to_string(&status).unwrap_or_default();
+            let line = status.lines().find(|line| line.starts_with("SigCgt:"));
+            let bits = line.and_then(|line| u64::from_str_radix(line[7..].trim(), 16).ok());
+            bits.is_some_and(|bits| bits >> 14 & 1 == 1)
+        };
+        if !Path::new(&status).exists() {
+            return;
+        }
+        wait_for(catches);
+        std::thread::sleep(Duration::from_millis(20));
+        signal(&child, name);
+        let done = child.wait_with_output().unwrap();
+        assert_eq!(done.status.code(), Some(code), "{}", said(&done.stderr));
+        assert!(std::fs::read(folder.path().join("s.rrd")).unwrap() == good);
+        assert!(!folder.path().join("s.partial.rrd").exists());
+    }
+}
+
+#[test]
+fn a_sweep_that_is_stopped_says_what_of_it_is_missing() {
+    let more = "[sweep]\n\"body.a.mass\" = [1.0, 2.0, 3.0]\n";
+    let folder = folder_with(&format!("{}{more}", endless()));
+    let child = begun(folder.path(), &["run", "s.toml", "--json"]);
+    signal(&child, "-INT");
+    let done = child.wait_with_output().unwrap();
+    let why = said(&done.stderr);
+    assert_eq!(done.status.code(), Some(130), "{why}");
+    assert!(why.contains("stopped at t = "), "{why}");
+    let last = why.lines().last().unwrap();
+    assert!(last.starts_with("not run: "), "{why}");
+    assert!(
+        last.contains("mass = 2") && last.contains("mass = 3"),
+        "{why}"
+    );
+    assert!(!last.contains("mass = 1"), "{why}");
+    let report: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert_eq!(report.as_array().unwrap().len(), 1);
+}
+
 /// A disk of one megabyte, in a name space of our own. Says whether there can be one here.
 fn on_a_small_disk(folder: &Path, options: &str, then: &str) -> Option<Output> {
     let script = format!("mount -t tmpfs -o {options} tmpfs small && {{ {then}; }}");
@@ -500,4 +566,90 @@ fn rows_written_ahead_of_time_are_kept() {
     let partial = record::partial_name(&to.path);
     let found = record::recover(&partial, &to).unwrap();
     assert!(found.rows > 0 && found.until == 0.1, "{found:?}");
+}
+
+/// All that a run was killed before is the name.
+#[test]
+fn a_whole_file_that_lacks_its_name_gets_it() {
+    let (folder, path, bytes) = recording(SHORT);
+    let partial = record::partial_name(&path);
+    std::fs::rename(&path, &partial).unwrap();
+    let run = output(folder.path(), &["run", "s.toml"]);
+    assert_eq!(run.status.code(), Some(2));
+    assert!(said(&run.stderr).contains("`torquescope recover s.partial.rrd` makes a whole"));
+    std::fs::write(&path, "a letter").unwrap();
+    let occupied = output(folder.path(), &["recover", "s.partial.rrd", "--force"]);
+    assert_eq!(occupied.status.code(), Some(2));
+    std::fs::remove_file(&path).unwrap();
+    let done = output(folder.path(), &["recover", "s.partial.rrd"]);
+    let out = said(&done.stdout);
+    assert!(done.status.success(), "{}", said(&done.stderr));
+    assert!(
+        out.starts_with("s.partial.rrd: is whole, and lacked only its name\ns.rrd: "),
+        "{out}"
+    );
+    assert!(std::fs::read(&path).unwrap() == bytes);
+    assert!(!partial.exists());
+}
+
+/// `run` and `recover` agree on what a killed run has left.
+#[test]
+fn a_partial_file_with_nothing_in_it_is_in_nobodys_way() {
+    let (folder, path, bytes) = recording(SHORT);
+    let partial = record::partial_name(&path);
+    std::fs::remove_file(&path).unwrap();
+    for length in [0, 3, 12, 500] {
+        std::fs::write(&partial, &bytes[..length]).unwrap();
+        let done = output(folder.path(), &["recover", "s.partial.rrd"]);
+        assert_eq!(done.status.code(), Some(2), "{length}");
+        let done = output(folder.path(), &["run", "s.toml"]);
+        assert!(done.status.success(), "{length}: {}", said(&done.stderr));
+        assert!(std::fs::read(&path).unwrap() == bytes);
+        std::fs::remove_file(&path).unwrap();
+    }
+    // What cannot be read is not known to be nothing.
+    let mut broken = bytes[..500].to_vec();
+    broken[12] = 0x40;
+    std::fs::write(&partial, &broken).unwrap();
+    let done = output(folder.path(), &["recover", "s.partial.rrd"]);
+    assert_eq!(done.status.code(), Some(2));
+    let why = said(&done.stderr);
+    assert!(
+        why.contains("nothing that was simulated can be read of it"),
+        "{why}"
+    );
+    assert_eq!(
+        output(folder.path(), &["run", "s.toml"]).status.code(),
+        Some(2)
+    );
+    let done = output(folder.path(), &["run", "s.toml", "--force"]);
+    assert!(done.status.success());
+    assert_eq!(
+        said(&done.stderr),
+        "s.partial.rrd was left by a run that was killed; --force writes over it\n"
+    );
+}
+
+#[test]
+fn a_recovery_that_fails_leaves_nothing() {
+    let (folder, _, bytes) = recording(&SHORT.replace("duration = 0.5", "duration = 5.0"));
+    let cut = folder.path().join("cut.rrd");
+    std::fs::write(&cut, &bytes[..bytes.len() - 100]).unwrap();
+    // No file may be larger than some 50 KB, and that is no signal.
+    let script = "trap '' XFSZ; ulimit -f 100; exec $T recover cut.rrd";
+    let done = Command::new("sh")
+        .current_dir(folder.path())
+        .args(["-c", script])
+        .env("T", cargo_bin("torquescope"))
+        .output()
+        .unwrap();
+    let why = said(&done.stderr);
+    assert_eq!(done.status.code(), Some(1), "{why}");
+    assert!(why.contains("File too large"), "{why}");
+    let mut names: Vec<String> = std::fs::read_dir(folder.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["cut.rrd", "s.rrd", "s.toml"]);
 }

@@ -53,6 +53,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let to = record::Destination::new(&arguments.out).replacing(arguments.force);
     to.check()?;
+    print::written_over(&to);
     let mut failed = Vec::new();
     let runs = runs(arguments, &mut failed)?;
     if runs.len() < 2 {

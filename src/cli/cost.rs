@@ -458,6 +458,7 @@ fn files(
     plot::svg(cost, &title, &places.svg)?;
     plot::png(cost, &title, &places.png)?;
     let to = Destination::new(&places.recording).replacing(force);
+    print::written_over(&to);
     record(scene, methods, cost, advice, &to)?;
     print::err(&format!(
         "{}, {}, {recording}\nto open it: torquescope view {recording}",

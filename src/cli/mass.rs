@@ -254,6 +254,7 @@ fn robot(arguments: &Arguments) -> anyhow::Result<()> {
     }
     if let Some(out) = &arguments.record {
         let to = record::Destination::new(out).replacing(arguments.force);
+        print::written_over(&to);
         record::links(&to, &robot)?;
         if !arguments.json {
             print::out(&format!("drawn: {}", out.display()))?;

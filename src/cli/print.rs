@@ -1,5 +1,6 @@
 //! Printing: tables, and a pipe that closes early is no error.
 
+use crate::record::Destination;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
@@ -24,6 +25,16 @@ pub fn out(text: &str) -> anyhow::Result<()> {
 /// Prints a line to stderr; where there is nobody to read it, that is no failure.
 pub fn err(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// Says what a killed run has left that is about to be written over.
+pub fn written_over(to: &Destination) {
+    if let Some(path) = to.writes_over() {
+        err(&format!(
+            "{} was left by a run that was killed; --force writes over it",
+            path.display()
+        ));
+    }
 }
 
 pub fn json(value: &impl serde::Serialize) -> anyhow::Result<()> {

@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 /// Make a whole recording of one that was cut off or damaged.
 ///
 /// A run that was killed leaves NAME.partial.rrd: it opens, and lacks what tells where it ends. This writes what can be read of
-/// it as NAME.rrd and takes the partial file away. Where bytes are not those that were written, what they
-/// belong to is left out; where it cannot be read further there may be more behind: the file stays, and the exit
-/// code is 1.
+/// it as NAME.rrd and takes the partial file away; where that is whole it gets its name. Where bytes are not those
+/// that were written, what they belong to is left out; where it cannot be read further there may be more behind: the
+/// file stays, and the exit code is 1.
 #[derive(clap::Args)]
 #[command(after_help = "Example: torquescope recover cone.partial.rrd")]
 pub struct Arguments {
@@ -40,6 +40,8 @@ struct Report<'a> {
     until: f64,
     /// Chunks that were left out, because their bytes are not those that were written.
     left_out: u64,
+    /// Bytes of which it is not known whether they are those that were written: their checksums are lost.
+    unchecked: u64,
     /// Bytes at its end that were cut within a message.
     cut: u64,
     /// Whether there may be more in it than could be read.
@@ -62,25 +64,27 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         RecoverError::Record(error) => anyhow::Error::from(error),
         other => Wrong(other.to_string()).into(),
     })?;
-    let is_partial = file.to_string_lossy().ends_with(".partial.rrd");
-    let all_there = found.left_out == 0 && !found.more;
-    if found.flaw.is_some() && all_there && is_partial {
-        std::fs::remove_file(file)?;
-    }
+    let all_there = found.is_all();
+    let is_new = found.flaw.is_some() || found.named;
     if arguments.json {
         print::json(&Report {
             recording: file.display().to_string(),
-            recovered: found.flaw.is_some().then(|| out.display().to_string()),
+            recovered: is_new.then(|| out.display().to_string()),
             flaw: found.flaw.as_deref(),
             chunks: found.chunks,
             rows: found.rows,
             until: found.until,
             left_out: found.left_out,
+            unchecked: found.unchecked,
             cut: found.cut,
             more: found.more,
         })?;
     } else {
         print::out(&text(file, &out, &found))?;
+    }
+    let is_partial = file.to_string_lossy().ends_with(record::PARTIAL);
+    if found.flaw.is_some() && all_there && is_partial {
+        found.take_away(file)?;
     }
     match all_there {
         true => Ok(()),
@@ -89,10 +93,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 fn text(file: &Path, out: &Path, found: &Recovered) -> String {
-    let Some(flaw) = &found.flaw else {
-        return format!("{}: is whole; there is nothing to recover", file.display());
+    let mut text = match &found.flaw {
+        Some(flaw) => format!("{}: {flaw}\n", file.display()),
+        None if found.named => format!("{}: is whole, and lacked only its name\n", file.display()),
+        None => return format!("{}: is whole; there is nothing to recover", file.display()),
     };
-    let mut text = format!("{}: {flaw}\n", file.display());
     if found.cut > 0 {
         text += &format!(
             "its last {} bytes are part of something longer\n",
@@ -106,6 +111,12 @@ fn text(file: &Path, out: &Path, found: &Recovered) -> String {
         text += &format!(
             "left out, because their bytes are not those that were written: {} of its chunks\n",
             found.left_out
+        );
+    }
+    if found.unchecked > 0 {
+        text += &format!(
+            "taken as they are, because their checksums are lost: {} bytes; the file stays\n",
+            found.unchecked
         );
     }
     let out = print::argument(out);

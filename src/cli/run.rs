@@ -113,7 +113,8 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let path = place(arguments, made.is_some(), &scenes[0])?;
     let to = arguments.destination(&path);
     to.check()?;
-    let stop = Stop::listen()?;
+    print::written_over(&to);
+    let stop = Stop::prepare()?;
     let plans = plans(&scenes, arguments.explain)?;
     let page = match arguments.view {
         true => Some(view::bind(&path, &arguments.serve)?),
@@ -141,7 +142,18 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
         )
     };
     if let Some(code) = stop.code() {
-        print::err(&kept());
+        match failed.is_empty() {
+            // The signal came after the last step of a scene.
+            true => print::err("stopped; what was run is recorded to its end"),
+            false => print::err(&kept()),
+        }
+        let not_run = scenes[ran.len()..].iter();
+        let not_run: Vec<&str> = not_run
+            .filter_map(|scene| scene.variant.as_deref())
+            .collect();
+        if !not_run.is_empty() {
+            print::err(&format!("not run: {}", not_run.join("; ")));
+        }
         return Err(Told(code).into());
     }
     if let Some(page) = page {
@@ -325,6 +337,8 @@ pub(super) fn record(
             None => start(heading, &subjects)?,
             Some(recorder) => recorder.then(heading, &subjects)?,
         };
+        // Before the first step there is nothing to be finished, and what has the name already stays.
+        stop.finish_from_here();
         let (outcome, done) = trace::beside(&mut sink, |sink| match plan {
             Some(plan) => simulation.run_by(&mut plan.chooser(), sink),
             None => simulation.run(sink),
@@ -371,7 +385,8 @@ fn report(
     });
     let reports: Vec<Report> = reports.collect();
     match reports.as_slice() {
-        [one] => print::json(one),
+        [one] if scenes.len() == 1 => print::json(one),
+        // Also of a sweep that was stopped in its first.
         several => print::json(&several),
     }
 }
@@ -389,7 +404,7 @@ fn texts(scenes: &[Scene], plans: &[Option<Plan>], ran: &[Ran], summary: &Summar
         text += "\n\n";
     }
     let path = print::argument(&summary.path);
-    let several = match scenes.len() {
+    let several = match ran.len() {
         1 => String::new(),
         n => format!(", {n} recordings, to be chosen between in the panel on the left"),
     };

@@ -31,6 +31,7 @@ pub fn run(arguments: &Arguments, made: &Made) -> anyhow::Result<()> {
         ))
     })?;
     refuse_other_settings(arguments, made, &scenes)?;
+    let stop = Stop::prepare()?;
     let plans = plans(&scenes, false)?;
     let headings = headings(&scenes, arguments, true);
     let comparison = Comparison::new(&arguments.scene, made);
@@ -42,7 +43,9 @@ pub fn run(arguments: &Arguments, made: &Made) -> anyhow::Result<()> {
         Some(comparison) => Recorder::comparing(comparison, to.as_ref(), heading, subjects),
         None => Recorder::nowhere(heading, subjects),
     };
-    let stop = Stop::listen()?;
+    if let Some(to) = &to {
+        print::written_over(to);
+    }
     let (_, summary) = record((&scenes, &plans), &headings, &stop, start)?;
     if let Some(code) = stop.code() {
         print::err(&format!(

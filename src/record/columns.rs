@@ -26,6 +26,12 @@ impl Times {
         self.steps.push(at.step as i64);
     }
 
+    /// Only the first so many.
+    pub fn truncate(&mut self, len: usize) {
+        self.nanoseconds.truncate(len);
+        self.steps.truncate(len);
+    }
+
     pub fn len(&self) -> usize {
         self.steps.len()
     }

@@ -8,11 +8,13 @@
 //! ```
 //!
 //! They are a message like any other, a chunk of no time at an entity that viewers do not show, so that every reader of the
-//! format reads the file. The footer has a checksum of its own.
+//! format reads the file. The footer has a checksum of its own. Whenever bytes are given to the system, messages that
+//! wait are behind those that are settled, and behind all of them checksums of what has none: whatever the moment at
+//! which a program is killed.
 
 use super::MAGIC;
 use super::columns::{Ends, counts};
-use super::destination::Output;
+use super::destination::{Behind, Output};
 use re_protos::log_msg::v1alpha1::RrdFooter;
 use rerun::ComponentDescriptor;
 use rerun::external::arrow::datatypes::Schema;
@@ -23,6 +25,7 @@ use rerun::external::re_log_encoding::{
 };
 use rerun::external::re_log_types::{ArrowMsg, LogMsg, StoreId};
 use rerun::log::{Chunk, ChunkId, RowId};
+use std::ops::Range;
 
 /// Writes an `.rrd` file.
 pub struct Frames {
@@ -37,6 +40,12 @@ pub struct Frames {
     /// What the footer will say, by store.
     manifests: Vec<(StoreId, RrdManifestBuilder)>,
     scratch: Vec<u8>,
+    /// The store of the last chunk.
+    store: Option<StoreId>,
+    /// Messages that wait to be settled with others, empty once they are.
+    waiting: Vec<Vec<u8>>,
+    /// Whether the footer was written.
+    ended: bool,
 }
 
 /// Bytes between checksums at least.
@@ -61,6 +70,9 @@ impl Frames {
             checks: 0,
             manifests: Vec::new(),
             scratch: Vec::new(),
+            store: None,
+            waiting: Vec::new(),
+            ended: false,
         };
         let head = StreamHeader {
             fourcc: *MAGIC,
@@ -85,6 +97,9 @@ impl Frames {
     /// Writes a chunk of a store, and checksums where they are due.
     pub fn chunk(&mut self, store: &StoreId, chunk: &Chunk) -> Result<(), String> {
         self.put_chunk(store, chunk)?;
+        if self.store.as_ref() != Some(store) {
+            self.store = Some(store.clone());
+        }
         match self.bytes - self.checked >= CHECKED_EVERY {
             true => self.put_checksums(store),
             false => Ok(()),
@@ -118,24 +133,59 @@ impl Frames {
         manifest.append(&batch, span, unpacked).map_err(said)
     }
 
-    /// Writes the checksums of what has none: from where, to where, and one of each message.
+    /// Gives everything to the system, and messages that are not settled, in place of others that were not.
+    pub fn keep_waiting(&mut self, messages: Vec<Vec<u8>>) -> Result<(), String> {
+        self.waiting = messages;
+        self.settle()
+    }
+
+    /// One of those is settled by now, as part of another.
+    pub fn is_settled(&mut self, waiting: usize) {
+        if let Some(message) = self.waiting.get_mut(waiting) {
+            *message = Vec::new();
+        }
+    }
+
+    /// Gives what can still be given to the system, when no more will come.
+    pub fn keep(&mut self) {
+        if !self.ended {
+            // It is said elsewhere why no more comes.
+            let _ = self.settle();
+        }
+        self.output.keep();
+    }
+
+    fn settle(&mut self) -> Result<(), String> {
+        let behind = self.behind()?;
+        self.output.settle(behind).map_err(said)
+    }
+
+    /// What waits, and checksums of all that has none; those to come are as if there had been none.
+    fn behind(&self) -> Result<Behind, String> {
+        let waiting = self.waiting.iter().filter(|message| !message.is_empty());
+        let mut sums = self.checksums.clone();
+        let mut behind = Behind::default();
+        for message in waiting {
+            sums.push(crc32fast::hash(message).into());
+            behind.bytes.extend_from_slice(message);
+            behind.rows = true;
+        }
+        if let Some(store) = self.store.as_ref().filter(|_| self.output.is_partial()) {
+            let end = self.bytes + behind.bytes.len() as u64;
+            let chunk = checksums(self.checks + 1, self.checked..end, sums)?;
+            let chunk = chunk.to_arrow_msg().map_err(said)?;
+            encode(&LogMsg::ArrowMsg(store.clone(), chunk), &mut behind.bytes)?;
+        }
+        Ok(behind)
+    }
+
+    /// Writes the checksums of what has none.
     fn put_checksums(&mut self, store: &StoreId) -> Result<(), String> {
-        let mut numbers = vec![self.checked, self.bytes];
-        numbers.append(&mut self.checksums);
-        self.checked = self.bytes;
-        let ends = Ends::uniform(1, numbers.len());
-        let column = counts(ComponentDescriptor::partial("crc32"), numbers, ends);
+        let sums = std::mem::take(&mut self.checksums);
         self.checks += 1;
-        let id = CHECKSUMS_OF | u128::from(self.checks);
-        let chunk = Chunk::from_native_row_ids(
-            ChunkId::from_u128(id),
-            CHECKSUMS.into(),
-            Some(true),
-            &[RowId::from_u128(id)],
-            Default::default(),
-            std::iter::once(column).collect(),
-        );
-        self.put_chunk(store, &chunk.map_err(said)?)
+        let chunk = checksums(self.checks, self.checked..self.bytes, sums)?;
+        self.checked = self.bytes;
+        self.put_chunk(store, &chunk)
     }
 
     /// Writes the last checksums, in this store, and the footer, and gives the file its name; its bytes.
@@ -162,20 +212,44 @@ impl Frames {
         self.scratch.extend_from_slice(&encoded);
         let last = StreamFooter::from_rrd_footer_bytes(start, &encoded);
         last.to_rrd_bytes(&mut self.scratch).map_err(said)?;
-        self.put()?;
+        // Nothing ever stands behind it.
+        self.ended = true;
+        self.output.write(&self.scratch);
+        self.bytes += self.scratch.len() as u64;
         self.output.finish().map_err(said)?;
         Ok(self.bytes)
     }
 
     /// Writes what is in `scratch`; how many bytes.
     fn put(&mut self) -> Result<u64, String> {
-        self.output.write(&self.scratch).map_err(said)?;
+        self.output.write(&self.scratch);
         let length = self.scratch.len() as u64;
         self.checksums.push(crc32fast::hash(&self.scratch).into());
         self.bytes += length;
         self.scratch.clear();
+        if self.output.is_full() {
+            self.settle()?;
+        }
         Ok(length)
     }
+}
+
+/// A chunk of checksums: from where, to where, and one of each message between.
+fn checksums(count: u64, of: Range<u64>, mut sums: Vec<u64>) -> Result<Chunk, String> {
+    let mut numbers = vec![of.start, of.end];
+    numbers.append(&mut sums);
+    let ends = Ends::uniform(1, numbers.len());
+    let column = counts(ComponentDescriptor::partial("crc32"), numbers, ends);
+    let id = CHECKSUMS_OF | u128::from(count);
+    let chunk = Chunk::from_native_row_ids(
+        ChunkId::from_u128(id),
+        CHECKSUMS.into(),
+        Some(true),
+        &[RowId::from_u128(id)],
+        Default::default(),
+        std::iter::once(column).collect(),
+    );
+    chunk.map_err(said)
 }
 
 /// Sorts the columns that a manifest lists, which come in the order of a hash: what is no component first.

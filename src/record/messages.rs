@@ -41,6 +41,9 @@ pub struct Messages {
     ended: bool,
     /// Messages that are not as they were written, and the footer where that is not.
     damaged: Vec<Range<u64>>,
+    /// Checksums that are none, and how many bytes have none by that.
+    spoiled: Vec<Range<u64>>,
+    bare: u64,
     bad_end: Option<Range<u64>>,
     /// Whether what cannot be unpacked is passed over.
     goes_on: bool,
@@ -51,6 +54,7 @@ pub struct Messages {
 /// Bytes of one message at most, unpacked: chunks are written by a few hundred rows, and a scene's
 /// text is no longer than 64 MB.
 const LARGEST_MESSAGE: u64 = 1 << 30;
+const TOO_LONG: &str = "a message in it is longer than it can be";
 /// LZ4 packs no tighter.
 const TIGHTEST: u64 = 255;
 
@@ -68,6 +72,8 @@ impl Messages {
             stopped: None,
             ended: false,
             damaged: Vec::new(),
+            spoiled: Vec::new(),
+            bare: 0,
             bad_end: None,
             goes_on: false,
             frame: Vec::new(),
@@ -146,6 +152,11 @@ impl Messages {
         &self.damaged
     }
 
+    /// Bytes whose checksums cannot be read, once it has been read past those.
+    pub fn without_checksums(&self) -> u64 {
+        self.bare
+    }
+
     /// Bytes at the end that are no message, once it has been read to there.
     pub fn unread(&self) -> u64 {
         self.bytes - self.read_until
@@ -166,7 +177,8 @@ impl Messages {
                 "it lacks the footer that rerun {RERUN_VERSION} ends a file with"
             ));
         }
-        let mut all = self.damaged.iter().chain(&self.bad_end);
+        let spoiled = self.damaged.iter().chain(&self.spoiled);
+        let mut all = spoiled.chain(&self.bad_end);
         let first = all.next()?;
         let others = match all.count() {
             0 => String::new(),
@@ -193,6 +205,10 @@ impl Messages {
             Ok(header) => header,
             Err(error) => return self.stop(&error.to_string()),
         };
+        // A footer grows with the file.
+        if header.len > LARGEST_MESSAGE && !matches!(header.kind, MessageKind::End) {
+            return self.stop(TOO_LONG);
+        }
         if header.len > self.bytes - self.at {
             // What was being written when the program was killed.
             self.at = self.bytes;
@@ -271,7 +287,7 @@ impl Messages {
         // A length that says more than there can be asks for memory that there is not.
         let most = LARGEST_MESSAGE.min(TIGHTEST * self.bytes + 64);
         if packed.byte_size_uncompressed() > most {
-            return Err("a message in it is longer than it can be".to_owned());
+            return Err(TOO_LONG.to_owned());
         }
         if let Msg::ArrowMsg(message) = &packed {
             must_be_whole(message)?;
@@ -288,31 +304,45 @@ impl Messages {
 
     /// Holds what was read against the checksums that were written of it.
     fn check(&mut self, written: Option<Vec<u64>>) {
-        let read = std::mem::take(&mut self.unchecked);
-        let from = read.first().map_or(0, |(place, _)| place.start);
+        let mut read = std::mem::take(&mut self.unchecked);
         let to = read.last().map_or(0, |(place, _)| place.end);
-        match written.as_deref() {
-            Some([start, end, sums @ ..])
-                if (*start, *end, sums.len()) == (from, to, read.len()) =>
-            {
-                let differ = read.into_iter().zip(sums);
-                let differ = differ.filter(|((_, read), sum)| u64::from(*read) != **sum);
-                // Those that could not be read are known.
-                let known = std::mem::take(&mut self.damaged);
-                let new = differ.map(|((place, _), _)| place);
-                let new = new.filter(|place| !known.contains(place));
-                self.damaged = known.iter().cloned().chain(new).collect();
-            }
+        let Some(written) = written else {
+            // What they were of may be as it was written, or not.
+            self.spoiled.push(self.place());
+            self.bare += length(&read);
+            return;
+        };
+        let [start, end, sums @ ..] = written.as_slice() else {
+            return;
+        };
+        // They begin with those before them, where those can be told from others.
+        let first = read.iter().position(|(place, _)| place.start == *start);
+        let Some(first) = first.filter(|first| (*end, sums.len()) == (to, read.len() - first))
+        else {
             // Another tool has put the messages in another order, or packed them otherwise.
-            Some(_) => {}
-            None => self.damaged.push(from..to),
-        }
+            return;
+        };
+        let of_these = read.split_off(first);
+        self.bare += length(&read);
+        let differ = of_these.into_iter().zip(sums);
+        let differ = differ.filter(|((_, read), sum)| u64::from(*read) != **sum);
+        // Those that could not be read are known.
+        let known = std::mem::take(&mut self.damaged);
+        let new = differ.map(|((place, _), _)| place);
+        let new = new.filter(|place| !known.contains(place) && !self.spoiled.contains(place));
+        self.damaged = known.iter().cloned().chain(new).collect();
     }
 
     fn stop<T>(&mut self, why: &str) -> Option<T> {
         self.stopped = Some(plain(why));
         None
     }
+}
+
+/// Bytes of some messages that come one after another.
+fn length(messages: &[(Range<u64>, u32)]) -> u64 {
+    let lengths = messages.iter().map(|(place, _)| place.end - place.start);
+    lengths.sum()
 }
 
 /// What a chunk of checksums says.

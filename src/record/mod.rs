@@ -42,7 +42,7 @@ mod viewer;
 pub use apart::{Apart, Measure, Pair, Tolerances, apart, pairs};
 pub use compare::{Comparison, Difference, Verdict};
 pub use curves::{PlotText, plot};
-pub use destination::{Destination, partial_name};
+pub use destination::{Destination, PARTIAL, partial_name};
 pub use export::Export;
 pub use ghosts::{Ghosts, letter};
 pub use heading::Heading;
@@ -81,6 +81,10 @@ pub enum RecordError {
     Occupied { path: String },
     #[error("{path} exists; --force replaces it, or choose another name")]
     Exists { path: String },
+    #[error(
+        "{path} is a link to {leads_to}, where there is nothing; remove it, or write to {leads_to} itself"
+    )]
+    Dangling { path: String, leads_to: String },
     #[error("{path} is being written by another torquescope; wait for it, or choose another name")]
     Busy { path: String },
     #[error(

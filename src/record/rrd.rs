@@ -12,7 +12,8 @@ use rerun::external::re_log_types::{
     BlueprintActivationCommand, LogMsg, SetStoreInfo, StoreId, StoreInfo, StoreKind, StoreSource,
 };
 use rerun::log::{Chunk, ChunkId, RowId};
-use rerun::{AsComponents, EntityPath, TimePoint};
+use rerun::{AsComponents, ComponentIdentifier, EntityPath, TimePoint};
+use std::collections::{BTreeSet, HashMap};
 use std::time::{Duration, Instant};
 
 /// What recordings of this program call themselves; blueprints apply to recordings of one name.
@@ -33,6 +34,8 @@ pub struct RrdFile {
     comparison: Option<Comparison>,
     /// Messages that are not settled, while they are gathered.
     tail: Option<Tail>,
+    /// Which of them waits for which columns to be settled.
+    waiting: HashMap<Columns, usize>,
     /// When everything was last in the file, and how long that may be ago.
     kept_up: Instant,
     keeps_up: Duration,
@@ -46,10 +49,14 @@ const SELDOM: u32 = 10;
 /// Messages that stand behind those that are settled until others take their place.
 #[derive(Default)]
 struct Tail {
-    bytes: Vec<u8>,
+    messages: Vec<Vec<u8>>,
+    waiting: HashMap<Columns, usize>,
     /// Its numbers are its own: what is settled is numbered as if it had never been.
     next: u64,
 }
+
+/// Rows of the same columns wait together: a chunk that is settled holds all of them that did.
+type Columns = (EntityPath, BTreeSet<ComponentIdentifier>);
 
 /// Which of a file's two stores a chunk belongs to.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -93,6 +100,7 @@ impl RrdFile {
             ahead: false,
             comparison: None,
             tail: None,
+            waiting: HashMap::new(),
             kept_up: Instant::now(),
             keeps_up: Duration::MAX,
             took: Duration::ZERO,
@@ -221,7 +229,8 @@ impl RrdFile {
     /// Gives all that was settled, and what was not, to the system.
     pub fn end_tail(&mut self) -> Result<(), RecordError> {
         let tail = self.tail.take().unwrap_or_default();
-        let done = self.frames.output().tail(&tail.bytes);
+        self.waiting = tail.waiting;
+        let done = self.frames.keep_waiting(tail.messages);
         self.took = self.kept_up.elapsed();
         self.kept_up = Instant::now();
         done.map_err(|error| self.stopped(&error))
@@ -259,10 +268,13 @@ impl RrdFile {
         let id = self.id(store);
         if let Some(tail) = &mut self.tail {
             self.ahead = true;
-            let message = chunk.to_arrow_msg().map_err(|error| error.to_string());
-            let done =
-                message.and_then(|message| encode(&LogMsg::ArrowMsg(id, message), &mut tail.bytes));
-            return done.map(|_| ()).map_err(|error| self.stopped(&error));
+            let done = tail.add(id, &chunk);
+            return done.map_err(|error| self.stopped(&error));
+        }
+        if !self.waiting.is_empty()
+            && let Some(waiting) = self.waiting.remove(&columns(&chunk))
+        {
+            self.frames.is_settled(waiting);
         }
         if store == Store::Recording {
             if !chunk.is_static() {
@@ -306,11 +318,27 @@ impl RrdFile {
     }
 }
 
+impl Tail {
+    fn add(&mut self, store: StoreId, chunk: &Chunk) -> Result<(), String> {
+        let message = chunk.to_arrow_msg().map_err(|error| error.to_string())?;
+        let mut bytes = Vec::new();
+        encode(&LogMsg::ArrowMsg(store, message), &mut bytes)?;
+        self.waiting.insert(columns(chunk), self.messages.len());
+        self.messages.push(bytes);
+        Ok(())
+    }
+}
+
+fn columns(chunk: &Chunk) -> Columns {
+    let components = chunk.components().keys().copied().collect();
+    (chunk.entity_path().clone(), components)
+}
+
 impl Drop for RrdFile {
     /// What is there of a recording is kept when it ends before its time; an empty one is not.
     fn drop(&mut self) {
         match self.rows > 0 || self.ahead {
-            true => self.frames.output().keep(),
+            true => self.frames.keep(),
             false => self.frames.output().discard(),
         }
     }

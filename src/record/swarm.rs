@@ -119,8 +119,11 @@ impl SwarmRecorder {
                 self.pose(at, motion);
             }
         }
-        if end == self.members.end && self.times.len() * count * POSE >= BUFFERED {
-            self.flush(file)?;
+        if end == self.members.end {
+            self.base = self.times.len();
+            if self.base * count * POSE >= BUFFERED {
+                self.flush(file)?;
+            }
         }
         Ok(())
     }
@@ -143,7 +146,13 @@ impl SwarmRecorder {
             .for_each(|(to, &x)| *to = x as f32);
     }
 
+    /// Writes the rows that all bodies have; others are begun, and wait for the rest of their bodies.
     pub fn flush(&mut self, file: &mut RrdFile) -> Result<(), RecordError> {
+        let count = self.members.len();
+        self.times.truncate(self.base);
+        self.positions.truncate(self.base * count * 3);
+        self.attitudes.truncate(self.base * count * 4);
+        self.base = 0;
         let times = std::mem::take(&mut self.times);
         let ends = Ends::uniform(times.len(), self.members.len());
         let positions = std::mem::take(&mut self.positions);
