@@ -1,4 +1,4 @@
-//! Arrow columns built straight from flat numbers: one list of instances a row.
+//! Columns of numbers and texts, flat: one list of instances a row; and how they become Arrow's.
 
 use crate::trace::Instant;
 use rerun::external::arrow::array::{
@@ -11,7 +11,24 @@ use rerun::{ComponentDescriptor, TimeColumn};
 use std::sync::Arc;
 
 /// A component and its values, a list a row.
-pub type Column = (ComponentDescriptor, ListArray);
+#[derive(Clone)]
+pub struct Column {
+    pub descriptor: ComponentDescriptor,
+    pub values: Values,
+    pub ends: Ends,
+}
+
+/// All values of a column, one after the other.
+#[derive(Clone)]
+pub enum Values {
+    Numbers(Vec<f64>),
+    Counts(Vec<u64>),
+    /// Of so many components each.
+    Vectors(Vec<f32>, i32),
+    /// Points of three components, and where each strip ends.
+    Strips(Vec<f32>, Ends),
+    Texts(Vec<String>),
+}
 
 /// When the rows of a chunk happened.
 #[derive(Clone, Default)]
@@ -40,13 +57,25 @@ impl Times {
         self.steps.is_empty()
     }
 
+    pub fn nanoseconds(&self) -> &[i64] {
+        &self.nanoseconds
+    }
+
+    pub fn steps(&self) -> &[i64] {
+        &self.steps
+    }
+
     pub fn columns(&self) -> [TimeColumn; 2] {
         [
-            TimeColumn::new_duration_nanos("sim_time", self.nanoseconds.iter().copied()),
-            TimeColumn::new_sequence("step", self.steps.iter().copied()),
+            TimeColumn::new_duration_nanos(SIM_TIME, self.nanoseconds.iter().copied()),
+            TimeColumn::new_sequence(STEP, self.steps.iter().copied()),
         ]
     }
 }
+
+/// The timelines, by name.
+pub const SIM_TIME: &str = "sim_time";
+pub const STEP: &str = "step";
 
 /// Where the list of each row ends.
 #[derive(Clone)]
@@ -70,6 +99,11 @@ impl Ends {
         Self((0..=rows).map(|row| (row * per) as i32).collect())
     }
 
+    /// With the 0 at which the first begins.
+    pub fn offsets(&self) -> &[i32] {
+        &self.0
+    }
+
     fn buffer(self) -> OffsetBuffer<i32> {
         OffsetBuffer::new(ScalarBuffer::from(self.0))
     }
@@ -77,13 +111,20 @@ impl Ends {
 
 /// f64 numbers.
 pub fn numbers(descriptor: ComponentDescriptor, values: Vec<f64>, ends: Ends) -> Column {
-    let values = Arc::new(Float64Array::new(ScalarBuffer::from(values), None));
-    (descriptor, list(values, ends))
+    Column {
+        descriptor,
+        values: Values::Numbers(values),
+        ends,
+    }
 }
 
 /// Whole numbers.
 pub fn counts(descriptor: ComponentDescriptor, values: Vec<u64>, ends: Ends) -> Column {
-    (descriptor, list(Arc::new(UInt64Array::from(values)), ends))
+    Column {
+        descriptor,
+        values: Values::Counts(values),
+        ends,
+    }
 }
 
 /// f32 vectors of `width` components.
@@ -93,7 +134,11 @@ pub fn vectors(
     width: i32,
     ends: Ends,
 ) -> Column {
-    (descriptor, list(fixed(values, width), ends))
+    Column {
+        descriptor,
+        values: Values::Vectors(values, width),
+        ends,
+    }
 }
 
 /// f32 polylines: `points` ends each strip (in points), `ends` each row (in strips).
@@ -103,15 +148,40 @@ pub fn strips(
     points: Ends,
     ends: Ends,
 ) -> Column {
-    let item = fixed(values, 3);
-    let field = Field::new("item", item.data_type().clone(), false);
-    let strips = ListArray::new(Arc::new(field), points.buffer(), item, None);
-    (descriptor, list(Arc::new(strips), ends))
+    Column {
+        descriptor,
+        values: Values::Strips(values, points),
+        ends,
+    }
 }
 
 /// Texts.
 pub fn texts(descriptor: ComponentDescriptor, values: Vec<String>, ends: Ends) -> Column {
-    (descriptor, list(Arc::new(StringArray::from(values)), ends))
+    Column {
+        descriptor,
+        values: Values::Texts(values),
+        ends,
+    }
+}
+
+impl Column {
+    pub fn into_arrow(self) -> (ComponentDescriptor, ListArray) {
+        let values: ArrayRef = match self.values {
+            Values::Numbers(values) => Arc::new(Float64Array::new(values.into(), None)),
+            Values::Counts(values) => Arc::new(UInt64Array::from(values)),
+            Values::Vectors(values, width) => fixed(values, width),
+            Values::Strips(values, points) => {
+                let item = fixed(values, 3);
+                let field = Field::new("item", item.data_type().clone(), false);
+                let strips = ListArray::new(Arc::new(field), points.buffer(), item, None);
+                Arc::new(strips)
+            }
+            Values::Texts(values) => Arc::new(StringArray::from(values)),
+        };
+        let field = Field::new("item", values.data_type().clone(), true);
+        let list = ListArray::new(Arc::new(field), self.ends.buffer(), values, None);
+        (self.descriptor, list)
+    }
 }
 
 fn fixed(values: Vec<f32>, width: i32) -> ArrayRef {
@@ -123,9 +193,4 @@ fn fixed(values: Vec<f32>, width: i32) -> ArrayRef {
         values,
         None,
     ))
-}
-
-fn list(values: ArrayRef, ends: Ends) -> ListArray {
-    let field = Field::new("item", values.data_type().clone(), true);
-    ListArray::new(Arc::new(field), ends.buffer(), values, None)
 }

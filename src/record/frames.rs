@@ -15,9 +15,13 @@
 use super::MAGIC;
 use super::columns::{Ends, counts};
 use super::destination::{Behind, Output};
-use re_protos::log_msg::v1alpha1::RrdFooter;
+use super::manifest::{Columns, Manifest, Place};
+use super::stencil::{Form, Rows, Stencils};
+use re_protos::common::v1alpha1::Compression as Packing;
+use re_protos::log_msg::v1alpha1::log_msg::Msg;
+use re_protos::log_msg::v1alpha1::{Encoding, RrdFooter};
 use rerun::ComponentDescriptor;
-use rerun::external::arrow::datatypes::Schema;
+use rerun::external::arrow::array::RecordBatch;
 use rerun::external::re_chunk_store::external::re_chunk::Span;
 use rerun::external::re_log_encoding::{
     Compression, CrateVersion, Encodable as _, EncodingOptions, MessageHeader, MessageKind,
@@ -38,7 +42,11 @@ pub struct Frames {
     /// How often there were some.
     checks: u64,
     /// What the footer will say, by store.
-    manifests: Vec<(StoreId, RrdManifestBuilder)>,
+    manifests: Vec<(StoreId, Manifest)>,
+    stencils: Stencils,
+    packer: Packer,
+    /// Room for a chunk, and for a message.
+    stream: Vec<u8>,
     scratch: Vec<u8>,
     /// The store of the last chunk.
     store: Option<StoreId>,
@@ -69,6 +77,9 @@ impl Frames {
             checksums: Vec::new(),
             checks: 0,
             manifests: Vec::new(),
+            stencils: Stencils::default(),
+            packer: Packer::default(),
+            stream: Vec::new(),
             scratch: Vec::new(),
             store: None,
             waiting: Vec::new(),
@@ -97,6 +108,10 @@ impl Frames {
     /// Writes a chunk of a store, and checksums where they are due.
     pub fn chunk(&mut self, store: &StoreId, chunk: &Chunk) -> Result<(), String> {
         self.put_chunk(store, chunk)?;
+        self.check(store)
+    }
+
+    fn check(&mut self, store: &StoreId) -> Result<(), String> {
         if self.store.as_ref() != Some(store) {
             self.store = Some(store.clone());
         }
@@ -107,6 +122,64 @@ impl Frames {
     }
 
     fn put_chunk(&mut self, store: &StoreId, chunk: &Chunk) -> Result<(), String> {
+        self.put_built(store, chunk, None).map(|_| ())
+    }
+
+    /// Writes rows of an entity, with checksums where they are due.
+    pub fn rows(&mut self, store: &StoreId, rows: &Rows<'_>) -> Result<(), String> {
+        match rows.form() {
+            Some(form) => self.put_rows(store, rows, form)?,
+            None => self.put_chunk(store, &rows.chunk()?)?,
+        }
+        self.check(store)
+    }
+
+    /// The message of rows that are not settled.
+    pub fn packed(&mut self, store: &StoreId, rows: &Rows<'_>) -> Result<Vec<u8>, String> {
+        let mut message = Vec::new();
+        self.stream.clear();
+        let form = rows.form();
+        if let Some(form) = &form
+            && self.stencils.write(form, rows, &mut self.stream)
+        {
+            self.packer
+                .encode(store, rows.chunk, &self.stream, &mut message)?;
+            return Ok(message);
+        }
+        let chunk = rows.chunk()?.to_arrow_msg().map_err(said)?;
+        let batch = chunk.batch.clone();
+        encode(&LogMsg::ArrowMsg(store.clone(), chunk), &mut message)?;
+        if let Some(form) = form {
+            self.stencils.learn(form, rows, &batch);
+        }
+        Ok(message)
+    }
+
+    /// Rows through a stencil, where there were others like them.
+    fn put_rows(&mut self, store: &StoreId, rows: &Rows<'_>, form: Form) -> Result<(), String> {
+        let like = (rows.path, form.columns());
+        self.stream.clear();
+        if self.manifest(store).knows(like) && self.stencils.write(&form, rows, &mut self.stream) {
+            self.packer
+                .encode(store, rows.chunk, &self.stream, &mut self.scratch)?;
+            let unpacked = self.stream.len() as u64;
+            let place = self.put_placed(unpacked)?;
+            self.manifest(store)
+                .append_like(like, rows.chunk, rows.times, place);
+            return Ok(());
+        }
+        let batch = self.put_built(store, &rows.chunk()?, Some(like))?;
+        self.stencils.learn(form, rows, &batch);
+        Ok(())
+    }
+
+    /// Writes a chunk that Rerun has built; `like` says what others like it have.
+    fn put_built(
+        &mut self,
+        store: &StoreId,
+        chunk: &Chunk,
+        like: Option<(&str, Columns)>,
+    ) -> Result<RecordBatch, String> {
         // The message and the footer's line are made of the same batch.
         let batch = chunk.to_chunk_batch().map_err(said)?;
         let message = ArrowMsg {
@@ -116,21 +189,36 @@ impl Frames {
         };
         let message = LogMsg::ArrowMsg(store.clone(), message);
         let unpacked = encode(&message, &mut self.scratch)?;
-        let start = self.bytes + MessageHeader::ENCODED_SIZE_BYTES as u64;
-        let length = self.put()? - MessageHeader::ENCODED_SIZE_BYTES as u64;
-        if !store.is_recording() {
-            // Looked up by nobody, and by its many small chunks it would be most of a footer.
-            return Ok(());
+        let place = self.put_placed(unpacked)?;
+        // A blueprint's chunks are looked up by nobody, and by their number they would be most of a footer.
+        if store.is_recording() {
+            let span = Span::from_start_len(place.start, place.length);
+            let add = |lines: &mut RrdManifestBuilder| {
+                lines.append(&batch, span, place.unpacked).map_err(said)
+            };
+            self.manifest(store).append(like, add)?;
         }
+        Ok(batch.into())
+    }
+
+    fn manifest(&mut self, store: &StoreId) -> &mut Manifest {
         let known = self.manifests.iter().position(|(id, _)| id == store);
         let index = known.unwrap_or_else(|| {
-            let manifest = RrdManifestBuilder::default();
-            self.manifests.push((store.clone(), manifest));
+            self.manifests.push((store.clone(), Manifest::default()));
             self.manifests.len() - 1
         });
-        let span = Span::from_start_len(start, length);
-        let manifest = &mut self.manifests[index].1;
-        manifest.append(&batch, span, unpacked).map_err(said)
+        &mut self.manifests[index].1
+    }
+
+    /// Writes what is in `scratch`; where it is.
+    fn put_placed(&mut self, unpacked: u64) -> Result<Place, String> {
+        let head = MessageHeader::ENCODED_SIZE_BYTES as u64;
+        let start = self.bytes + head;
+        Ok(Place {
+            start,
+            length: self.put()? - head,
+            unpacked,
+        })
     }
 
     /// Gives everything to the system, and messages that are not settled, in place of others that were not.
@@ -192,9 +280,9 @@ impl Frames {
     pub fn finish(&mut self, store: &StoreId) -> Result<u64, String> {
         self.put_checksums(store)?;
         let manifests = std::mem::take(&mut self.manifests).into_iter();
+        let manifests = manifests.filter(|(store, _)| store.is_recording());
         let manifests = manifests.map(|(store, manifest)| {
-            let mut manifest = manifest.build(store).map_err(said)?;
-            in_order(&mut manifest.sorbet_schema);
+            let manifest = manifest.build(store)?;
             manifest.to_transport(()).map_err(said)
         });
         let footer = RrdFooter {
@@ -247,19 +335,9 @@ fn checksums(count: u64, of: Range<u64>, mut sums: Vec<u64>) -> Result<Chunk, St
         Some(true),
         &[RowId::from_u128(id)],
         Default::default(),
-        std::iter::once(column).collect(),
+        std::iter::once(column.into_arrow()).collect(),
     );
     chunk.map_err(said)
-}
-
-/// Sorts the columns that a manifest lists, which come in the order of a hash: what is no component first.
-fn in_order(schema: &mut Schema) {
-    let mut fields = schema.fields().to_vec();
-    fields.sort_by_cached_key(|field| {
-        let kind = field.metadata().get("rerun:kind").cloned();
-        (kind, field.name().clone())
-    });
-    schema.fields = fields.into();
 }
 
 /// Appends a message to some bytes; how many it unpacks to.
@@ -272,3 +350,38 @@ pub fn encode(message: &LogMsg, into: &mut Vec<u8>) -> Result<u64, String> {
 fn said(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
+
+/// Puts Arrow streams into messages.
+#[derive(Default)]
+pub struct Packer {
+    packed: Vec<u8>,
+}
+
+impl Packer {
+    /// Appends the message of a chunk in time, as [`encode`] would.
+    fn encode(
+        &mut self,
+        store: &StoreId,
+        chunk: u128,
+        stream: &[u8],
+        into: &mut Vec<u8>,
+    ) -> Result<(), String> {
+        let most = lz4_flex::block::get_maximum_output_size(stream.len());
+        self.packed.resize(most, 0);
+        let length = lz4_flex::block::compress_into(stream, &mut self.packed).map_err(said)?;
+        let message = re_protos::log_msg::v1alpha1::ArrowMsg {
+            store_id: Some(store.clone().into()),
+            chunk_id: Some(ChunkId::from_u128(chunk).as_tuid().into()),
+            compression: Packing::Lz4 as i32,
+            uncompressed_size: stream.len() as u64,
+            encoding: Encoding::ArrowIpc as i32,
+            payload: self.packed[..length].to_vec().into(),
+            is_static: Some(false),
+        };
+        Msg::ArrowMsg(message).to_rrd_bytes(into).map_err(said)?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

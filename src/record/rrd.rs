@@ -7,7 +7,8 @@ use super::RecordError;
 use super::columns::{Column, Times};
 use super::compare::{Comparison, Verdict};
 use super::destination::{Destination, Output};
-use super::frames::{Frames, encode};
+use super::frames::Frames;
+use super::stencil::Rows;
 use rerun::external::re_log_types::{
     BlueprintActivationCommand, LogMsg, SetStoreInfo, StoreId, StoreInfo, StoreKind, StoreSource,
 };
@@ -56,7 +57,7 @@ struct Tail {
 }
 
 /// Rows of the same columns wait together: a chunk that is settled holds all of them that did.
-type Columns = (EntityPath, BTreeSet<ComponentIdentifier>);
+type Columns = (String, BTreeSet<ComponentIdentifier>);
 
 /// Which of a file's two stores a chunk belongs to.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -178,28 +179,48 @@ impl RrdFile {
     /// Writes columns: a row per time.
     pub fn columns(
         &mut self,
-        path: impl Into<EntityPath>,
+        path: impl AsRef<str>,
         times: &Times,
         columns: Vec<Column>,
     ) -> Result<(), RecordError> {
         if times.is_empty() {
             return Ok(());
         }
-        let id = self.chunk_id();
-        let rows: Vec<RowId> = (0..times.len()).map(|_| self.row_id()).collect();
-        let timelines = times.columns();
-        let chunk = Chunk::from_native_row_ids(
-            id,
-            path.into(),
-            Some(true),
-            &rows,
-            timelines
-                .into_iter()
-                .map(|c| (*c.timeline().name(), c))
-                .collect(),
-            columns.into_iter().collect(),
-        );
-        self.chunk(Store::Recording, chunk)
+        let rows = Rows {
+            path: path.as_ref(),
+            chunk: self.number(),
+            first: self.numbers(times.len()),
+            times,
+            columns: &columns,
+        };
+        let done = match self.tail.is_some() {
+            true => self.wait(&rows),
+            false => self.settle(&rows),
+        };
+        done.map_err(|error| self.stopped(&error))
+    }
+
+    /// Adds rows to the tail.
+    fn wait(&mut self, rows: &Rows<'_>) -> Result<(), String> {
+        self.ahead = true;
+        let message = self.frames.packed(&self.recording, rows)?;
+        if let Some(tail) = &mut self.tail {
+            tail.add(message, columns(rows));
+        }
+        Ok(())
+    }
+
+    fn settle(&mut self, rows: &Rows<'_>) -> Result<(), String> {
+        if !self.waiting.is_empty()
+            && let Some(waiting) = self.waiting.remove(&columns(rows))
+        {
+            self.frames.is_settled(waiting);
+        }
+        self.rows += rows.times.len() as u64;
+        if let Some(comparison) = &mut self.comparison {
+            comparison.take(&rows.chunk()?);
+        }
+        self.frames.rows(&self.recording, rows)
     }
 
     /// Writes the footer and everything buffered, and gives the file its name; returns the bytes of the
@@ -266,16 +287,6 @@ impl RrdFile {
     ) -> Result<(), RecordError> {
         let chunk = chunk.map_err(|error| self.stopped(&error))?;
         let id = self.id(store);
-        if let Some(tail) = &mut self.tail {
-            self.ahead = true;
-            let done = tail.add(id, &chunk);
-            return done.map_err(|error| self.stopped(&error));
-        }
-        if !self.waiting.is_empty()
-            && let Some(waiting) = self.waiting.remove(&columns(&chunk))
-        {
-            self.frames.is_settled(waiting);
-        }
         if store == Store::Recording {
             if !chunk.is_static() {
                 self.rows += chunk.num_rows() as u64;
@@ -309,29 +320,34 @@ impl RrdFile {
     }
 
     fn number(&mut self) -> u128 {
+        self.numbers(1)
+    }
+
+    /// The first of so many numbers.
+    fn numbers(&mut self, count: usize) -> u128 {
         let (half, next) = match &mut self.tail {
             Some(tail) => (UNSETTLED, &mut tail.next),
             None => (SETTLED, &mut self.next),
         };
-        *next += 1;
-        half | u128::from(*next)
+        let first = *next + 1;
+        *next += count as u64;
+        half | u128::from(first)
     }
 }
 
 impl Tail {
-    fn add(&mut self, store: StoreId, chunk: &Chunk) -> Result<(), String> {
-        let message = chunk.to_arrow_msg().map_err(|error| error.to_string())?;
-        let mut bytes = Vec::new();
-        encode(&LogMsg::ArrowMsg(store, message), &mut bytes)?;
-        self.waiting.insert(columns(chunk), self.messages.len());
-        self.messages.push(bytes);
-        Ok(())
+    fn add(&mut self, message: Vec<u8>, columns: Columns) {
+        self.waiting.insert(columns, self.messages.len());
+        self.messages.push(message);
     }
 }
 
-fn columns(chunk: &Chunk) -> Columns {
-    let components = chunk.components().keys().copied().collect();
-    (chunk.entity_path().clone(), components)
+fn columns(rows: &Rows<'_>) -> Columns {
+    let components = rows
+        .columns
+        .iter()
+        .map(|column| column.descriptor.component);
+    (rows.path.to_owned(), components.collect())
 }
 
 impl Drop for RrdFile {
