@@ -306,7 +306,7 @@ fn each_value_of_a_sweep_does_what_theory_says() {
     assert_eq!(reports.len(), 3);
     let columns = column(
         &folder.path().join("spin_down.rrd"),
-        "/bodies/wheel/spin",
+        "/bodies/wheel",
         "angular_velocity",
     );
     assert_eq!(columns.len(), 3);
@@ -445,13 +445,7 @@ fn a_recording_run_again_gives_the_same_bits() {
     // Again, into a file of its own, changed or not.
     assert_eq!(run(folder.path(), &["s.rrd"]).0, 0);
     let (old, new) = ("s.rrd", "s-again.rrd");
-    let spin = |file: &str| {
-        column(
-            &folder.path().join(file),
-            "/bodies/a/spin",
-            "angular_velocity",
-        )
-    };
+    let spin = |file: &str| column(&folder.path().join(file), "/bodies/a", "angular_velocity");
     assert_eq!(spin(old), spin(new));
     let (code, _, wrong) = run(folder.path(), &["s.rrd", "--out", "s.rrd"]);
     assert_eq!(
@@ -498,7 +492,7 @@ fn a_number_that_was_changed_is_found_where_it_is() {
     tamper(
         &at("s.rrd"),
         &at("changed.rrd"),
-        "/bodies/a/spin",
+        "/bodies/a",
         "angular_velocity",
         |list| {
             let values = list
@@ -519,7 +513,7 @@ fn a_number_that_was_changed_is_found_where_it_is() {
     );
     assert_eq!(report["same"], false);
     let difference = &report["recordings"][0]["difference"];
-    let steps: Vec<i64> = column(&at("s.rrd"), "/bodies/a/spin", "angular_velocity")[0]
+    let steps: Vec<i64> = column(&at("s.rrd"), "/bodies/a", "angular_velocity")[0]
         .iter()
         .map(|row| row.0)
         .collect();

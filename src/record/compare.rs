@@ -470,7 +470,7 @@ fn named(path: &str, column: &str, part: Option<usize>) -> Named {
     }
     let mut quantities = STREAMS.iter().flat_map(|stream| stream.quantities);
     let quantity = quantities.find(|quantity| quantity.name == column);
-    let is_number = path.starts_with("/numbers/") || path.ends_with("/spin");
+    let is_number = path.starts_with("/numbers/") || path.starts_with("/bodies/");
     let Some(quantity) = quantity.filter(|_| is_number) else {
         return Named {
             name: format!("{column} of {path}"),

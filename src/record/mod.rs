@@ -1,9 +1,8 @@
 //! Level 6: recordings. The only place that says `rerun`.
 //!
 //! The tree of a recording is by quantity first, so that one click hides every torque:
-//! `/bodies/NAME` (position) `/spin` (attitude) `/shape`, `/torque/NAME`, `/alpha/NAME`, …, and
-//! `/numbers/NAME`, the same quantities as f64 columns. Pictures hang on the bodies by frames, so
-//! that no pose is stored twice. Static things are written once, everything else by columns.
+//! `/bodies/NAME` (pose) `/shape`, `/torque/NAME`, `/alpha/NAME`, …, and `/numbers/NAME`, the same quantities as f64
+//! columns. Pictures hang by frames on the bodies, or on their places where they do not turn. Static things are written once, everything else by columns.
 
 mod apart;
 mod band;

@@ -16,6 +16,7 @@ use super::{Destination, RecordError};
 use crate::trace::{
     Instant, Motion, Note, NoteKind, STREAMS, Sample, Sink, SinkError, StreamSet, Subject, Track,
 };
+use nalgebra::Vector3;
 use rerun::archetypes::{
     CoordinateFrame, Ellipsoids3D, Mesh3D, Points3D, RecordingInfo, StateChange, TextDocument,
     TextLog, Transform3D, ViewCoordinates,
@@ -85,8 +86,23 @@ struct BodyRecorder {
     positions: Vec<f32>,
     attitudes: Vec<f32>,
     omegas: Vec<f64>,
+    /// Where it is, for what goes with it and does not turn.
+    places: Places,
     bands: Vec<Band>,
 }
+
+/// Places of a body that are so far apart that one sees it.
+#[derive(Clone)]
+struct Places {
+    /// m.
+    apart: f64,
+    last: Option<Vector3<f64>>,
+    times: Times,
+    values: Vec<f32>,
+}
+
+/// Of a body's radius: a pixel or two of a body that fills a good part of the view.
+const SEEN_APART: f64 = 0.01;
 
 impl Recorder {
     /// Creates the file and writes what does not change: blueprint first, then static things.
@@ -399,6 +415,12 @@ impl BodyRecorder {
             positions: Vec::new(),
             attitudes: Vec::new(),
             omegas: Vec::new(),
+            places: Places {
+                apart: SEEN_APART * mesh::radius(subject),
+                last: None,
+                times: Times::default(),
+                values: Vec::new(),
+            },
             bands: heading.bands.iter().map(band).collect(),
         }
     }
@@ -412,15 +434,15 @@ impl BodyRecorder {
         let subject = &self.subject;
         let name = &subject.name;
         let shape: Mesh3D = mesh::mesh(subject, look::BODIES[index % look::BODIES.len()]);
-        file.statics(format!("/bodies/{name}/spin/shape"), &[&shape])?;
+        file.statics(format!("/bodies/{name}/shape"), &[&shape])?;
         let above = [0.0, (1.2 * heading.scales.size) as f32, 0.0];
         let label = Points3D::new([above])
             .with_radii([Radius::new_ui_points(0.0)])
             .with_labels([subject.label.as_str()])
             .with_colors([look::NAME])
             .with_show_labels(true);
-        let at_body = CoordinateFrame::new(format!("tf#/bodies/{name}"));
-        file.statics(format!("/labels/{name}"), &[&at_body, &label])?;
+        let at_place = CoordinateFrame::new(format!("tf#/places/{name}"));
+        file.statics(format!("/labels/{name}"), &[&at_place, &label])?;
         if let Some(pivot_w) = subject.pivot_w {
             let at = Transform3D::from_translation(<[f32; 3]>::from(pivot_w.map(|x| x as f32)));
             let dot = Points3D::new([[0.0_f32; 3]])
@@ -441,7 +463,7 @@ impl BodyRecorder {
             return Ok(());
         };
         let name = &self.subject.name;
-        let at_body = CoordinateFrame::new(format!("tf#/bodies/{name}/spin"));
+        let at_body = CoordinateFrame::new(format!("tf#/bodies/{name}"));
         let [x, y, z, w] = q.coords.map(|x| x as f32).into();
         let ellipsoid = Ellipsoids3D::from_half_sizes([<[f32; 3]>::from(half.map(|x| x as f32))])
             .with_quaternions([rerun::Quaternion::from_xyzw([x, y, z, w])])
@@ -457,6 +479,7 @@ impl BodyRecorder {
         self.attitudes
             .extend(motion.q_wb.coords.iter().map(|&x| x as f32));
         self.omegas.extend(motion.omega_w.iter());
+        self.places.pass(at, motion.position_w);
     }
 
     /// The state: f32 pose for the picture, f64 angular velocity.
@@ -480,13 +503,30 @@ impl BodyRecorder {
             omegas,
             Ends::uniform(rows, 3),
         );
-        file.columns(format!("/bodies/{name}"), &times, vec![translation])?;
-        file.columns(
-            format!("/bodies/{name}/spin"),
-            &times,
-            vec![quaternion, omega],
-        )?;
-        Ok(())
+        let columns = vec![translation, quaternion, omega];
+        file.columns(format!("/bodies/{name}"), &times, columns)?;
+        self.places.flush(file, name)
+    }
+}
+
+impl Places {
+    /// Keeps a place that is far enough from the last.
+    fn pass(&mut self, at: Instant, position_w: Vector3<f64>) {
+        let near = |last: Vector3<f64>| (position_w - last).norm() <= self.apart;
+        if self.last.is_some_and(near) {
+            return;
+        }
+        self.last = Some(position_w);
+        self.times.push(at);
+        self.values.extend(position_w.iter().map(|&x| x as f32));
+    }
+
+    fn flush(&mut self, file: &mut RrdFile, name: &str) -> Result<(), RecordError> {
+        let times = std::mem::take(&mut self.times);
+        let values = std::mem::take(&mut self.values);
+        let one = Ends::uniform(times.len(), 1);
+        let column = vectors(Transform3D::descriptor_translation(), values, 3, one);
+        file.columns(format!("/places/{name}"), &times, vec![column])
     }
 }
 

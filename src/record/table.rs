@@ -1,8 +1,8 @@
 //! The numbers of a recording, by body and quantity.
 //!
-//! Of recordings of this program: the f64 columns of `/numbers`; where a quantity has none there the pose of the picture
-//! (f32, at every step), and the angular velocity of `/bodies/NAME/spin`, which is f64 and there at every step. Of
-//! others: transforms and scalars, by entity, as they were logged: relative to the parent.
+//! Of recordings of this program: the f64 columns of `/numbers`; where a quantity has none there, the state of `/bodies/NAME`,
+//! which is there at every step: the pose of the picture, f32, and the angular velocity, f64. Of others: transforms and
+//! scalars, by entity, as they were logged: relative to the parent.
 
 use super::read;
 use super::survey::{InspectError, STATIC, Survey, times};
@@ -263,14 +263,14 @@ fn own_columns(chunk: &Chunk) -> Vec<Column> {
                 .collect()
         }
         ["numbers", body, "torque", source] => by_source(chunk, body, source).into_iter().collect(),
-        ["bodies", body] => {
-            let at = one(body, TRANSLATION, "position", Origin::Picture);
-            at.into_iter().collect()
-        }
-        ["bodies", body, "spin"] => {
-            let turn = one(body, QUATERNION, "orientation", Origin::Picture);
-            let omega = one(body, "angular_velocity", "angular_velocity", Origin::State);
-            turn.into_iter().chain(omega).collect()
+        // In a recording of ghosts place and turn are apart.
+        ["bodies", body] | ["bodies", body, "spin"] => {
+            let columns = [
+                one(body, TRANSLATION, "position", Origin::Picture),
+                one(body, QUATERNION, "orientation", Origin::Picture),
+                one(body, "angular_velocity", "angular_velocity", Origin::State),
+            ];
+            columns.into_iter().flatten().collect()
         }
         _ => Vec::new(),
     }

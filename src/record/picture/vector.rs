@@ -207,7 +207,7 @@ impl Picture for VectorPicture {
         // A pivot stays where it is; the centre of mass of a free body takes its arrows along.
         let parent = match subject.pivot_b {
             Some(_) => format!("tf#/pivots/{}", subject.name),
-            None => format!("tf#/bodies/{}", subject.name),
+            None => format!("tf#/places/{}", subject.name),
         };
         let scaling = Transform3D::from_scale(self.shown.scale as f32)
             .with_child_frame(frame.as_str())
