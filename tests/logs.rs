@@ -173,6 +173,82 @@ fn columns_are_recognised_as_people_write_them() {
     }
 }
 
+fn fixture(name: &str) -> Vec<u8> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/logs");
+    std::fs::read(folder.join(name)).unwrap()
+}
+
+#[test]
+fn what_other_programs_write_is_read() {
+    let log = |name: &str| Log::read("log", &fixture(name)[..], Options::default()).unwrap();
+    // ULog: microseconds, w first, rates along the body's axes; R of (0, 0, 0.6, 0.8) takes (1, 2) to (0.28, 0.96) + 2 (-0.96, 0.28).
+    let (ulog, report) = log("ulog.csv");
+    let rows = &ulog.bodies[0].rows;
+    assert_eq!(rows.times, [0.001, 0.005]);
+    assert_eq!(rows.attitudes, [[0.0, 0.0, 0.6, 0.8]; 2]);
+    let omega = Vector3::from(rows.omegas[0]);
+    assert!(
+        (omega - Vector3::new(-0.164, 0.152, 0.3)).norm() < 1e-15,
+        "{omega}"
+    );
+    assert_eq!(report.count(Bad::NotFinite), 1);
+    // ROS, as rostopic prints it: nanoseconds since 1970, a twist of the child frame.
+    let (odometry, report) = log("odometry.csv");
+    assert_eq!(odometry.bodies[0].name, "base");
+    let rows = &odometry.bodies[0].rows;
+    assert_eq!(rows.times, [0.0, 0.01]);
+    assert_eq!(rows.positions, [[1.0, 2.0, 3.0]; 2]);
+    let omega = Vector3::from(rows.omegas[0]);
+    assert!(
+        (omega - Vector3::new(-0.164, 0.152, 0.3)).norm() < 1e-15,
+        "{omega}"
+    );
+    assert!(
+        said(&report, "columns-not-read").ends_with("not read: field.header.stamp"),
+        "{report}"
+    );
+    // MuJoCo's state of one free body; of several nobody can tell whose it is.
+    let qpos = |n: usize| {
+        (0..n)
+            .map(|k| format!("qpos[{k}]"))
+            .collect::<Vec<_>>()
+            .join(",")
+    };
+    let qvel = |n: usize| {
+        (0..n)
+            .map(|k| format!("qvel[{k}]"))
+            .collect::<Vec<_>>()
+            .join(",")
+    };
+    let text = format!(
+        "time,{},{}\n0,1,2,3,0.8,0,0,0.6,4,5,6,0.1,0.2,0.3\n",
+        qpos(7),
+        qvel(6)
+    );
+    let row = crate::rows(&text, &[])[0];
+    assert_eq!(
+        (row.position, row.velocity),
+        (Some([1.0, 2.0, 3.0]), Some([4.0, 5.0, 6.0]))
+    );
+    assert_eq!(row.attitude, Some([0.0, 0.0, 0.6, 0.8]));
+    let omega = Vector3::from(row.omega.unwrap());
+    assert!(
+        (omega - Vector3::new(-0.164, 0.152, 0.3)).norm() < 1e-15,
+        "{omega}"
+    );
+    let why = refused(&format!("time,{},{}\n", qpos(14), qvel(12)), &[]);
+    assert!(
+        why.starts_with("log:1: no columns are recognised as an attitude"),
+        "{why}"
+    );
+    // The lines of the docs.
+    let (lines, report) = log("lines.jsonl");
+    assert_eq!(lines.bodies[0].rows.times, [0.0, 0.2]);
+    assert_eq!(report.told[0].line, 2);
+    let (bodies, _) = bodies::read("bodies.toml", &fixture("bodies.toml")).unwrap();
+    assert_eq!(bodies[0].1.mass, Some(2.0));
+}
+
 /// Bodies' axes where that is the custom: (0.1, 0.2, 0.3) about a body turned by a quarter about z.
 #[test]
 fn what_is_along_the_bodys_axes_is_turned() {

@@ -309,6 +309,18 @@ impl Search<'_> {
         };
         // Of what may be two things the other may be meant.
         candidates.retain(|c| c.spelling.either || !said(c.spelling.quantity));
+        // Of several free bodies no number says whose it is.
+        if self
+            .names
+            .iter()
+            .any(|name| matches!(plain(name).as_str(), "qpos7" | "qvel6"))
+        {
+            let joint = |&k: &usize| {
+                let key = plain(&self.names[k]);
+                key.starts_with("qpos") || key.starts_with("qvel")
+            };
+            candidates.retain(|c| !c.columns.iter().any(joint));
+        }
         self.clocks(&mut candidates);
         for quantity in Quantity::ALL {
             self.choose(quantity, &candidates, false);

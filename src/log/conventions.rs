@@ -336,7 +336,7 @@ pub fn search(rows: &Kinematics) -> Result<Found, CannotTell> {
     }
     let turned: f64 = turns.iter().sum();
     // A thousandth of a radian in all is what rounding to f32 may make of rest.
-    if !(turned > 1e-3) {
+    if turned.is_nan() || turned <= 1e-3 {
         return Err(CannotTell::NoTurn);
     }
     if rows.omegas[..usable].iter().flatten().all(|x| *x == 0.0) {

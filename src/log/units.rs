@@ -115,7 +115,7 @@ pub static UNITS: &[Unit] = &[
     unit("km/h", &["kmh", "kph"], Kind::Speed, 1.0, 3.6),
     unit(
         "rad/s",
-        &["rad", "rps", "rad per s", "rad per sec", "rad/sec"],
+        &["rad", "rad per s", "rad per sec", "rad/sec"],
         Kind::AngularSpeed,
         1.0,
         1.0,
@@ -135,7 +135,7 @@ pub static UNITS: &[Unit] = &[
         PI,
         180.0,
     ),
-    unit("rev/s", &["hz"], Kind::AngularSpeed, 2.0 * PI, 1.0),
+    unit("rev/s", &["turns/s"], Kind::AngularSpeed, 2.0 * PI, 1.0),
     unit("rpm", &["rev/min"], Kind::AngularSpeed, 2.0 * PI, 60.0),
     unit("N m", &["newton metre"], Kind::Torque, 1.0, 1.0),
     unit("mN m", &["N mm"], Kind::Torque, 1.0, 1e3),

@@ -11,7 +11,8 @@ pub(super) enum Number {
     Nothing,
     Is(f64),
     NotFinite,
-    NotANumber,
+    /// No number.
+    Wrong,
 }
 
 impl Number {
@@ -33,7 +34,7 @@ impl Number {
         match parsed(text) {
             Some(x) => Self::of(x),
             None if nothing.contains(&text) => Self::Nothing,
-            None => Self::NotANumber,
+            None => Self::Wrong,
         }
     }
 }
@@ -61,9 +62,9 @@ impl Cells for Vec<Value> {
     fn number(&self, column: usize) -> Number {
         match self.get(column) {
             None | Some(Value::Null) => Number::Nothing,
-            Some(Value::Number(number)) => number.as_f64().map_or(Number::NotANumber, Number::of),
+            Some(Value::Number(number)) => number.as_f64().map_or(Number::Wrong, Number::of),
             Some(Value::String(text)) => Number::read(text.as_bytes()),
-            Some(_) => Number::NotANumber,
+            Some(_) => Number::Wrong,
         }
     }
 
@@ -146,8 +147,8 @@ mod tests {
             ("nan", Number::NotFinite),
             ("-inf", Number::NotFinite),
             ("1e999", Number::NotFinite),
-            ("0,5", Number::NotANumber),
-            ("abc", Number::NotANumber),
+            ("0,5", Number::Wrong),
+            ("abc", Number::Wrong),
         ] {
             assert_eq!(Number::read(text.as_bytes()), wanted, "{text}");
         }

@@ -179,9 +179,9 @@ impl Gathered {
     /// Gives every row its torque and force: none where none is written.
     fn loads(&mut self, own: bool, note: &mut impl FnMut(&'static str, String)) {
         for (list, what) in [(&mut self.torques, "torque"), (&mut self.forces, "force")] {
-            let empty = list.iter().filter(|v| !is_there(*v)).count();
+            let empty = list.iter().filter(|v| !is_there(v)).count();
             list.iter_mut()
-                .filter(|v| !is_there(*v))
+                .filter(|v| !is_there(v))
                 .for_each(|v| *v = [0.0; 3]);
             // Our own export has no force where none acts.
             if empty > 0 && !own {

@@ -352,6 +352,7 @@ impl<R: BufRead> Reader<R> {
     /// All that there is to say of what has been read.
     pub fn report(&self) -> Report {
         let mut report = self.report.clone();
+        report.columns = self.columns.clone();
         report.notes.extend(self.notes());
         report
     }
@@ -807,7 +808,7 @@ fn take(
                 format!("`{text}` is not finite"),
             ))
         }
-        Number::NotANumber => {
+        Number::Wrong => {
             let text = shown(&String::from_utf8_lossy(&cells.text(column)));
             let comma = text.contains(',') && text.replace(',', ".").parse::<f64>().is_ok();
             let why = if comma {
@@ -849,7 +850,14 @@ fn take(
         let [x, y, z] = vector.columns.map(number);
         let si = |k: usize, x: f64| vector.units[k].map_or(x, |unit: &Unit| unit.to_si(x));
         *slot = match (x?, y?, z?) {
-            (Some(x), Some(y), Some(z)) => Some([si(0, x), si(1, y), si(2, z)]),
+            (Some(x), Some(y), Some(z)) => {
+                let read = [si(0, x), si(1, y), si(2, z)];
+                if let Some(k) = read.iter().position(|x| !x.is_finite()) {
+                    let what = "is too large in its unit to be a number".to_owned();
+                    return Err(wrong(Bad::NotFinite, vector.columns[k], what));
+                }
+                Some(read)
+            }
             (None, None, None) => None,
             (x, y, z) => {
                 let (empty, full) = part([x, y, z]);

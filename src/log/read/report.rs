@@ -1,5 +1,6 @@
 //! What a reader has to say of a log: rows that it left out, and what about the others is worth knowing.
 
+use crate::log::columns::Columns;
 use std::fmt;
 
 /// Why a row is left out.
@@ -154,6 +155,8 @@ impl Note {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     pub file: String,
+    /// What was read as what.
+    pub columns: Columns,
     /// Rows that were read.
     pub rows: u64,
     pub(super) bad: [u64; Bad::ALL.len()],

@@ -90,7 +90,7 @@ impl Track {
         if let Some(q) = raw.attitude {
             let length: f64 = q.iter().map(|x| x * x).sum();
             // |q| is sqrt: to first order half as far from one.
-            if !((length - 1.0).abs() <= 2.0 * LENGTH) {
+            if (length - 1.0).abs() > 2.0 * LENGTH {
                 self.lengths.add(raw.line, (length.sqrt() - 1.0).abs());
             }
         }
