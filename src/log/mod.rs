@@ -3,6 +3,17 @@
 //! Nothing here is put right: a quaternion is what was written, an inertia may belong to no body. A torque or a force acts
 //! during the step that follows its row, and they add up.
 
+pub mod bodies;
+pub mod columns;
+pub mod conventions;
+pub mod mapping;
+pub mod read;
+pub mod spellings;
+pub mod units;
+
+pub use mapping::Mapping;
+pub use read::{LogError, Options, Reader, Reading, Report, Row};
+
 use nalgebra::{Matrix3, Vector3};
 
 /// The log of an engine.

@@ -20,10 +20,10 @@ mod pairing;
 mod parts;
 pub mod pick;
 mod problem;
-mod read;
+pub(crate) mod read;
 mod script;
 mod swarm;
-mod table;
+pub(crate) mod table;
 mod warnings;
 
 pub use amend::{Amended, Entry};

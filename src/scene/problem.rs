@@ -50,7 +50,7 @@ pub struct Problems {
 const MOST: usize = 50;
 
 impl Problems {
-    pub(super) fn new(file: &str, source: &str) -> Self {
+    pub(crate) fn new(file: &str, source: &str) -> Self {
         Self {
             file: file.to_owned(),
             source: source.to_owned(),
@@ -61,12 +61,12 @@ impl Problems {
 
     /// Notes a problem at a place of the source. The message is one line: what and why, and after its
     /// last semicolon the remedy.
-    pub(super) fn add(&mut self, span: &Range<usize>, message: impl Into<String>) {
+    pub(crate) fn add(&mut self, span: &Range<usize>, message: impl Into<String>) {
         self.add_as("invalid", span, message);
     }
 
     /// The same, of a kind that has a name.
-    pub(super) fn add_as(
+    pub(crate) fn add_as(
         &mut self,
         code: &'static str,
         span: &Range<usize>,

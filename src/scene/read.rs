@@ -46,13 +46,7 @@ pub(super) fn scene(
         return Err(problems);
     }
     let mut problems = Problems::new(file, source);
-    let (document, errors) = parse(source);
-    // After the first faults a parser guesses.
-    for error in errors.iter().take(3) {
-        let span = error.span().unwrap_or(0..0);
-        problems.add_as("not-toml", &span, format!("not TOML: {}", error.message()));
-    }
-    let Some(document) = document.filter(|_| errors.is_empty()) else {
+    let Some(document) = document(source, &mut problems) else {
         return Err(problems);
     };
     let top = Table::top(document.get_ref(), &keys::SCENE);
@@ -70,6 +64,20 @@ pub(super) fn scene(
         }
         _ => Err(problems),
     }
+}
+
+/// The document of a text that is TOML.
+pub(crate) fn document<'s>(
+    source: &'s str,
+    problems: &mut Problems,
+) -> Option<Spanned<DeTable<'s>>> {
+    let (document, errors) = parse(source);
+    // After the first faults a parser guesses.
+    for error in errors.iter().take(3) {
+        let span = error.span().unwrap_or(0..0);
+        problems.add_as("not-toml", &span, format!("not TOML: {}", error.message()));
+    }
+    document.filter(|_| errors.is_empty())
 }
 
 /// The document, and what about it is not TOML.

@@ -13,7 +13,7 @@ use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 
 /// A table of a scene.
-pub(super) struct Table<'d> {
+pub(crate) struct Table<'d> {
     entries: &'d DeTable<'d>,
     span: Range<usize>,
     /// As the messages name it, such as `[effects]`.
@@ -31,7 +31,7 @@ enum Known {
 
 /// The value of a key.
 #[derive(Clone)]
-pub(super) struct Node<'d> {
+pub(crate) struct Node<'d> {
     pub key: &'static str,
     pub span: Range<usize>,
     value: &'d DeValue<'d>,
@@ -99,6 +99,19 @@ impl<'d> Table<'d> {
                 None
             }
         }
+    }
+
+    /// Every entry under the name that the file gives it.
+    pub fn named(&self, key: &'static str) -> impl Iterator<Item = (&'d str, Node<'d>)> {
+        self.entries.iter().map(move |(name, value)| {
+            let node = Node {
+                key,
+                span: value.span(),
+                value: value.get_ref(),
+                takes: None,
+            };
+            (name.get_ref().as_ref(), node)
+        })
     }
 
     pub fn has(&self, key: &str) -> bool {
