@@ -164,6 +164,28 @@ pub fn texts(descriptor: ComponentDescriptor, values: Vec<String>, ends: Ends) -
     }
 }
 
+impl Values {
+    /// Values; of strips how many of them.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Numbers(values) => values.len(),
+            Self::Counts(values) => values.len(),
+            Self::Vectors(values, width) => values.len() / *width as usize,
+            Self::Strips(_, ends) => ends.0.len() - 1,
+            Self::Texts(texts) => texts.len(),
+        }
+    }
+
+    /// The numbers that they are made of; texts of none.
+    pub fn numbers(&self) -> usize {
+        match self {
+            Self::Vectors(values, _) | Self::Strips(values, _) => values.len(),
+            Self::Texts(_) => 0,
+            Self::Numbers(_) | Self::Counts(_) => self.len(),
+        }
+    }
+}
+
 impl Column {
     pub fn into_arrow(self) -> (ComponentDescriptor, ListArray) {
         let values: ArrayRef = match self.values {

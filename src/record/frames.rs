@@ -127,10 +127,7 @@ impl Frames {
 
     /// Writes rows of an entity, with checksums where they are due.
     pub fn rows(&mut self, store: &StoreId, rows: &Rows<'_>) -> Result<(), String> {
-        match rows.form() {
-            Some(form) => self.put_rows(store, rows, form)?,
-            None => self.put_chunk(store, &rows.chunk()?)?,
-        }
+        self.put_rows(store, rows, rows.form())?;
         self.check(store)
     }
 
@@ -139,9 +136,7 @@ impl Frames {
         let mut message = Vec::new();
         self.stream.clear();
         let form = rows.form();
-        if let Some(form) = &form
-            && self.stencils.write(form, rows, &mut self.stream)
-        {
+        if self.stencils.write(&form, rows, &mut self.stream) {
             self.packer
                 .encode(store, rows.chunk, &self.stream, &mut message)?;
             return Ok(message);
@@ -149,9 +144,7 @@ impl Frames {
         let chunk = rows.chunk()?.to_arrow_msg().map_err(said)?;
         let batch = chunk.batch.clone();
         encode(&LogMsg::ArrowMsg(store.clone(), chunk), &mut message)?;
-        if let Some(form) = form {
-            self.stencils.learn(form, rows, &batch);
-        }
+        self.stencils.learn(form, rows, &batch);
         Ok(message)
     }
 

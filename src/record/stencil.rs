@@ -1,22 +1,21 @@
-//! Chunks that differ only in their numbers, written without being built each time.
+//! Chunks that differ only in their numbers and texts, written without being built each time.
 //!
 //! What stands in a message of a chunk is an Arrow stream:
 //!
 //! ```text
-//! schema (the chunk's id and entity are in it) | head of the batch | row ids, times, offsets, values | end
+//! schema (the chunk's id and entity are in it) | head of the batch (how much there is of what) | buffers | end
 //! ```
 //!
-//! Of chunks that have the same columns, as many rows and as many values, all of it but ids, entity, times, offsets and values
-//! is the same, byte for byte. So the first of a form is built and packed by Rerun and Arrow, and of their bytes a stencil is
-//! cut, through which all later ones go: a few copies in place of a hundred microseconds. A stencil that does not give its own
-//! chunk again, to the last byte, is thrown away.
+//! Of chunks with the same columns all but these is the same, byte for byte. So the first of a form is built and packed by Rerun and
+//! Arrow, of the bytes of the second a stencil is cut, and all later ones go through it: a few copies in place of a hundred
+//! microseconds. A stencil that does not give its own chunk again, to the last byte, is thrown away.
 
 use super::columns::{Column, SIM_TIME, STEP, Times, Values};
 use rerun::ComponentDescriptor;
-use rerun::external::arrow::array::RecordBatch;
-use rerun::external::arrow::datatypes::{DataType, Schema};
-use rerun::external::arrow::ipc::root_as_message;
+use rerun::external::arrow;
+use rerun::external::arrow::datatypes::Schema;
 use rerun::external::arrow::ipc::writer::StreamWriter;
+use rerun::external::arrow::ipc::{Message, RecordBatch, root_as_message};
 use rerun::log::{Chunk, ChunkId, RowId};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -35,20 +34,10 @@ pub struct Rows<'a> {
 /// What two chunks that go through one stencil have in common.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub struct Form {
+    /// Bytes of the entity's path.
     path: usize,
-    rows: usize,
-    /// Whether the times never go back: that is told in the schema.
-    sorted: [bool; 2],
-    columns: Vec<ColumnForm>,
-}
-
-#[derive(Clone, PartialEq, Eq, Hash)]
-struct ColumnForm {
-    descriptor: ComponentDescriptor,
-    /// Which kind, and how many components a value has.
-    kind: (u8, i32),
-    values: usize,
-    strips: usize,
+    columns: u64,
+    kinds: Vec<(ComponentDescriptor, u8, i32)>,
 }
 
 /// The stencils that were cut, by form.
@@ -71,55 +60,71 @@ struct Stencil {
     id_at: usize,
     path_at: usize,
     batch: Vec<u8>,
-    body: Vec<Piece>,
+    /// Where in it numbers are: bytes of all buffers, rows, how long each array is, where each buffer is.
+    length_at: usize,
+    rows_at: usize,
+    arrays_at: usize,
+    buffers_at: usize,
+    arrays: Vec<Held>,
     end: Vec<u8>,
 }
 
-struct Piece {
-    holds: Holds,
-    /// Bytes with what pads it.
-    length: usize,
+/// An array of a batch, those of lists before their items.
+struct Held {
+    counts: Counts,
+    buffers: Vec<Holds>,
 }
 
-#[derive(Clone, PartialEq)]
+/// How long an array is.
+#[derive(Clone, Copy)]
+enum Counts {
+    Rows,
+    /// Values of a column, or strips.
+    Items(usize),
+    /// Points of strips.
+    Points(usize),
+    /// Numbers of vectors or points.
+    Numbers(usize),
+}
+
+#[derive(Clone, Copy)]
 enum Holds {
-    /// Which values there are: all.
-    Same(Vec<u8>),
+    /// Which items are not there: none, of which nothing is said.
+    Missing,
     Ids,
     Nanoseconds,
     Steps,
-    Offsets(usize),
-    Strips(usize),
+    Ends(usize),
+    EndsOfStrips(usize),
+    EndsOfTexts(usize),
     Values(usize),
 }
 
 impl Rows<'_> {
-    /// What they have in common with others; `None` where values are of any length.
-    pub fn form(&self) -> Option<Form> {
-        let columns = self.columns.iter().map(|column| {
-            let (kind, values, strips) = match &column.values {
-                Values::Numbers(values) => ((0, 1), values.len(), 0),
-                Values::Counts(values) => ((1, 1), values.len(), 0),
-                Values::Vectors(values, width) => ((2, *width), values.len(), 0),
-                Values::Strips(values, ends) => ((3, 3), values.len(), ends.offsets().len()),
-                Values::Texts(_) => return None,
+    /// What they have in common with others.
+    pub fn form(&self) -> Form {
+        let mut hasher = DefaultHasher::new();
+        for column in self.columns {
+            (&column.descriptor, column.values.len() == 0).hash(&mut hasher);
+        }
+        // The schema says whether times never go back.
+        self.times.nanoseconds().is_sorted().hash(&mut hasher);
+        self.times.steps().is_sorted().hash(&mut hasher);
+        let kinds = self.columns.iter().map(|column| {
+            let (kind, width) = match &column.values {
+                Values::Numbers(_) => (0, 1),
+                Values::Counts(_) => (1, 1),
+                Values::Vectors(_, width) => (2, *width),
+                Values::Strips(..) => (3, 3),
+                Values::Texts(_) => (4, 1),
             };
-            Some(ColumnForm {
-                descriptor: column.descriptor.clone(),
-                kind,
-                values,
-                strips,
-            })
+            (column.descriptor.clone(), kind, width)
         });
-        Some(Form {
+        Form {
             path: self.path.len(),
-            rows: self.times.len(),
-            sorted: [
-                self.times.nanoseconds().is_sorted(),
-                self.times.steps().is_sorted(),
-            ],
-            columns: columns.collect::<Option<_>>()?,
-        })
+            columns: hasher.finish(),
+            kinds: kinds.collect(),
+        }
     }
 
     /// The chunk, as Rerun builds it.
@@ -144,14 +149,10 @@ impl Rows<'_> {
 }
 
 impl Form {
-    /// Which columns there are, and which of them are empty, as a hash: what the footer tells of a chunk.
+    /// Which columns there are, which of them are empty, and whether times go back, as a hash: chunks of one entity that have
+    /// the same are alike in the footer.
     pub fn columns(&self) -> u64 {
-        let mut hasher = DefaultHasher::new();
-        for column in &self.columns {
-            (&column.descriptor, column.values == 0).hash(&mut hasher);
-        }
-        self.sorted.hash(&mut hasher);
-        hasher.finish()
+        self.columns
     }
 }
 
@@ -166,7 +167,7 @@ impl Stencils {
     }
 
     /// Learns from a chunk that Rerun has built: the second of a form gives a stencil.
-    pub fn learn(&mut self, form: Form, rows: &Rows<'_>, batch: &RecordBatch) {
+    pub fn learn(&mut self, form: Form, rows: &Rows<'_>, batch: &arrow::array::RecordBatch) {
         if self.0.len() >= MOST {
             self.0.clear();
         }
@@ -185,7 +186,7 @@ impl Stencils {
 }
 
 /// A stencil that gives its own chunk again.
-fn cut(rows: &Rows<'_>, batch: &RecordBatch) -> Option<Stencil> {
+fn cut(rows: &Rows<'_>, batch: &arrow::array::RecordBatch) -> Option<Stencil> {
     let stream = packed(batch)?;
     let stencil = Stencil::cut(&stream, rows, batch.schema_ref())?;
     let mut again = Vec::with_capacity(stream.len());
@@ -194,7 +195,7 @@ fn cut(rows: &Rows<'_>, batch: &RecordBatch) -> Option<Stencil> {
 }
 
 /// The Arrow stream of a batch, as Rerun packs it.
-fn packed(batch: &RecordBatch) -> Option<Vec<u8>> {
+fn packed(batch: &arrow::array::RecordBatch) -> Option<Vec<u8>> {
     let mut stream = Vec::new();
     let mut writer = StreamWriter::try_new(&mut stream, batch.schema_ref()).ok()?;
     writer.write(batch).ok()?;
@@ -208,90 +209,129 @@ impl Stencil {
         let (first, rest) = message(stream)?;
         let head = root_as_message(&first[FRAME..]).ok()?;
         let told = head.header_as_schema()?.custom_metadata()?;
+        let at = |part: &[u8], whole: &[u8]| part.as_ptr() as usize - whole.as_ptr() as usize;
         let place = |key: &str, expected: &str| {
             let entry = told.iter().find(|entry| entry.key() == Some(key))?;
             let value = entry.value().filter(|value| *value == expected)?;
-            Some(value.as_ptr() as usize - first.as_ptr() as usize)
+            Some(at(value.as_bytes(), first))
         };
         let id_at = place("rerun:id", &ChunkId::from_u128(rows.chunk).to_string())?;
         let path_at = place("rerun:entity_path", rows.path)?;
         let (second, rest) = message(rest)?;
         let head = root_as_message(&second[FRAME..]).ok()?;
+        let batch = head.header_as_record_batch()?;
+        let (whole, inner) = (head._tab, batch._tab);
+        let length_field = whole.vtable().get(Message::VT_BODYLENGTH);
+        let rows_field = inner.vtable().get(RecordBatch::VT_LENGTH);
         let length = usize::try_from(head.bodyLength()).ok()?;
-        let (body, end) = rest.split_at_checked(length)?;
-        let buffers = head.header_as_record_batch()?.buffers()?;
-        let held = held(schema, rows)?;
-        if held.len() != buffers.len() {
-            return None;
-        }
-        let starts: Vec<usize> = buffers.iter().map(|b| b.offset() as usize).collect();
-        let mut pieces = Vec::new();
-        for (k, holds) in held.into_iter().enumerate() {
-            let next = starts.get(k + 1).copied().unwrap_or(length);
-            let bytes = body.get(starts[k]..starts[k] + buffers.get(k).length() as usize)?;
-            let holds = match holds {
-                Holds::Same(_) => Holds::Same(bytes.to_vec()),
-                other => other,
-            };
-            pieces.push(Piece {
-                holds,
-                length: next.checked_sub(starts[k])?,
-            });
-        }
         Some(Self {
             schema: first.to_vec(),
             id_at,
             path_at,
+            length_at: FRAME + whole.loc() + usize::from(length_field),
+            rows_at: FRAME + inner.loc() + usize::from(rows_field),
+            arrays_at: at(batch.nodes()?.bytes(), second),
+            buffers_at: at(batch.buffers()?.bytes(), second),
             batch: second.to_vec(),
-            body: pieces,
-            end: end.to_vec(),
+            arrays: held(schema, rows)?,
+            end: rest.get(length..)?.to_vec(),
         })
     }
 
     fn write(&self, rows: &Rows<'_>, into: &mut Vec<u8>) {
-        let start = into.len();
+        let schema = into.len();
         into.extend_from_slice(&self.schema);
-        let mut put = |at: usize, text: &str| {
-            let at = start + at;
-            into[at..at + text.len()].copy_from_slice(text.as_bytes());
-        };
-        put(self.id_at, &ChunkId::from_u128(rows.chunk).to_string());
-        put(self.path_at, rows.path);
+        let id = ChunkId::from_u128(rows.chunk).to_string();
+        put(into, schema + self.id_at, id.as_bytes());
+        put(into, schema + self.path_at, rows.path.as_bytes());
+        let batch = into.len();
         into.extend_from_slice(&self.batch);
-        for piece in &self.body {
-            let start = into.len();
-            piece.holds.write(rows, into);
-            into.resize(start + piece.length, 0);
+        put_count(into, batch + self.rows_at, rows.times.len());
+        let body = into.len();
+        let mut buffer_at = batch + self.buffers_at;
+        for (k, array) in self.arrays.iter().enumerate() {
+            let count = array.counts.of(rows);
+            // How many, and how many of them are not there.
+            put_count(into, batch + self.arrays_at + 16 * k, count);
+            for holds in &array.buffers {
+                let start = into.len();
+                holds.write(rows, count, into);
+                put_count(into, buffer_at, start - body);
+                let length = into.len() - start;
+                put_count(into, buffer_at + 8, length);
+                buffer_at += 16;
+                into.resize(start + length.next_multiple_of(ALIGNED), 0);
+            }
         }
+        let length = into.len() - body;
+        put_count(into, batch + self.length_at, length);
         into.extend_from_slice(&self.end);
     }
 }
 
+/// Bytes of which every buffer begins at a multiple.
+const ALIGNED: usize = 64;
+
+fn put(into: &mut [u8], at: usize, bytes: &[u8]) {
+    if let Some(place) = into.get_mut(at..at + bytes.len()) {
+        place.copy_from_slice(bytes);
+    }
+}
+
+fn put_count(into: &mut [u8], at: usize, count: usize) {
+    put(into, at, &(count as u64).to_le_bytes());
+}
+
+impl Counts {
+    fn of(self, rows: &Rows<'_>) -> usize {
+        let values = |k: usize| &rows.columns[k].values;
+        match self {
+            Self::Rows => rows.times.len(),
+            Self::Items(k) => values(k).len(),
+            Self::Points(k) => values(k).numbers() / 3,
+            Self::Numbers(k) => values(k).numbers(),
+        }
+    }
+}
+
 impl Holds {
-    fn write(&self, rows: &Rows<'_>, into: &mut Vec<u8>) {
+    fn write(self, rows: &Rows<'_>, count: usize, into: &mut Vec<u8>) {
         let column = |k: usize| &rows.columns[k];
         match self {
-            Self::Same(bytes) => into.extend_from_slice(bytes),
+            Self::Missing => {}
             Self::Ids => {
-                let ids = (0..rows.times.len() as u128).map(|k| rows.first + k);
+                let ids = (0..count as u128).map(|k| rows.first + k);
                 into.extend(ids.flat_map(u128::to_be_bytes));
             }
             Self::Nanoseconds => into.extend_from_slice(bytes(rows.times.nanoseconds())),
             Self::Steps => into.extend_from_slice(bytes(rows.times.steps())),
-            Self::Offsets(k) => into.extend_from_slice(bytes(column(*k).ends.offsets())),
-            Self::Strips(k) => {
-                if let Values::Strips(_, ends) = &column(*k).values {
+            Self::Ends(k) => into.extend_from_slice(bytes(column(k).ends.offsets())),
+            Self::EndsOfStrips(k) => {
+                if let Values::Strips(_, ends) = &column(k).values {
                     into.extend_from_slice(bytes(ends.offsets()));
                 }
             }
-            Self::Values(k) => match &column(*k).values {
+            Self::EndsOfTexts(k) => {
+                if let Values::Texts(texts) = &column(k).values {
+                    let mut end = 0;
+                    into.extend_from_slice(&i32::to_le_bytes(end));
+                    for text in texts {
+                        end += text.len() as i32;
+                        into.extend_from_slice(&end.to_le_bytes());
+                    }
+                }
+            }
+            Self::Values(k) => match &column(k).values {
                 Values::Numbers(values) => into.extend_from_slice(bytes(values)),
                 Values::Counts(values) => into.extend_from_slice(bytes(values)),
                 Values::Vectors(values, _) | Values::Strips(values, _) => {
                     into.extend_from_slice(bytes(values));
                 }
-                // They have no form.
-                Values::Texts(_) => {}
+                Values::Texts(texts) => {
+                    for text in texts {
+                        into.extend_from_slice(text.as_bytes());
+                    }
+                }
             },
         }
     }
@@ -314,45 +354,55 @@ fn message(stream: &[u8]) -> Option<(&[u8], &[u8])> {
     stream.split_at_checked(FRAME + length as usize)
 }
 
-/// What the buffers of a batch hold, in their order: which values there are, then the values, column by column.
-fn held(schema: &Schema, rows: &Rows<'_>) -> Option<Vec<Holds>> {
+/// The arrays of a batch and what their buffers hold, in their order.
+fn held(schema: &Schema, rows: &Rows<'_>) -> Option<Vec<Held>> {
     let mut all = Vec::new();
+    let mut push = |counts, holds| {
+        all.push(Held {
+            counts,
+            buffers: std::iter::once(Holds::Missing).chain(holds).collect(),
+        });
+    };
     for field in schema.fields() {
-        all.push(Holds::Same(Vec::new()));
         let metadata = field.metadata();
         match metadata.get("rerun:kind").map(String::as_str) {
-            Some("control") => all.push(Holds::Ids),
-            Some("index") => all.push(match metadata.get("rerun:index_name")?.as_str() {
-                SIM_TIME => Holds::Nanoseconds,
-                STEP => Holds::Steps,
-                _ => return None,
-            }),
+            Some("control") => push(Counts::Rows, vec![Holds::Ids]),
+            Some("index") => {
+                let times = match metadata.get("rerun:index_name")?.as_str() {
+                    SIM_TIME => Holds::Nanoseconds,
+                    STEP => Holds::Steps,
+                    _ => return None,
+                };
+                push(Counts::Rows, vec![times]);
+            }
             Some("data") => {
                 let component = metadata.get("rerun:component")?;
                 let named = |column: &Column| column.descriptor.component.as_str() == component;
                 let k = rows.columns.iter().position(named)?;
-                all.push(Holds::Offsets(k));
-                let DataType::List(item) = field.data_type() else {
-                    return None;
-                };
-                push_values(item.data_type(), k, &mut all)?;
+                push(Counts::Rows, vec![Holds::Ends(k)]);
+                match &rows.columns[k].values {
+                    Values::Numbers(_) | Values::Counts(_) => {
+                        push(Counts::Items(k), vec![Holds::Values(k)]);
+                    }
+                    Values::Vectors(..) => {
+                        push(Counts::Items(k), vec![]);
+                        push(Counts::Numbers(k), vec![Holds::Values(k)]);
+                    }
+                    Values::Strips(..) => {
+                        push(Counts::Items(k), vec![Holds::EndsOfStrips(k)]);
+                        push(Counts::Points(k), vec![]);
+                        push(Counts::Numbers(k), vec![Holds::Values(k)]);
+                    }
+                    Values::Texts(_) => {
+                        push(
+                            Counts::Items(k),
+                            vec![Holds::EndsOfTexts(k), Holds::Values(k)],
+                        );
+                    }
+                }
             }
             _ => return None,
         }
     }
     Some(all)
-}
-
-fn push_values(kind: &DataType, k: usize, all: &mut Vec<Holds>) -> Option<()> {
-    all.push(Holds::Same(Vec::new()));
-    match kind {
-        DataType::Float64 | DataType::Float32 | DataType::UInt64 => all.push(Holds::Values(k)),
-        DataType::FixedSizeList(item, _) => push_values(item.data_type(), k, all)?,
-        DataType::List(item) => {
-            all.push(Holds::Strips(k));
-            push_values(item.data_type(), k, all)?;
-        }
-        _ => return None,
-    }
-    Some(())
 }

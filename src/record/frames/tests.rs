@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::record::Destination;
-use crate::record::columns::{Column, Times, numbers, strips, vectors};
+use crate::record::columns::{Column, Times, numbers, strips, texts, vectors};
 use crate::trace::Instant;
 use rerun::external::re_log_types::StoreKind;
 
@@ -12,9 +12,9 @@ fn write(path: &std::path::Path, mut put: impl FnMut(&mut Frames, &StoreId, &Row
     let mut frames = Frames::new(Output::open(&to).unwrap()).unwrap();
     let store = StoreId::new(StoreKind::Recording, "test", "a");
     let mut next = 1 << 64;
-    for chunk in 0..24_usize {
+    for chunk in 0..72_usize {
         // One row more now and then, none of some column, times that go back.
-        let count = if chunk % 7 == 3 { 6 } else { 5 };
+        let count = [5, 64, 1, 9][chunk % 7 % 4];
         let mut times = Times::default();
         for row in 0..count {
             let back = if chunk % 9 == 4 && row == 2 { 3.0 } else { 0.0 };
@@ -41,6 +41,12 @@ fn write(path: &std::path::Path, mut put: impl FnMut(&mut Frames, &StoreId, &Row
             let points = Ends::uniform(filled, 1);
             columns.push(strips(partial("d"), arrows, points, some));
         }
+        let words = (0..filled).map(|k| "é".repeat((k + chunk) % 4)).collect();
+        columns.push(texts(
+            partial("f"),
+            words,
+            Ends::uniform(count, usize::from(filled > 0)),
+        ));
         let path = ["/bodies/one", "/bodies/two", "/bodies/other"][chunk % 3];
         let rows = Rows {
             path,
@@ -67,14 +73,14 @@ fn stencils_write_what_rerun_would() {
     });
     let mut through = 0;
     let own = write(&folder.path().join("b.rrd"), |frames, store, rows| {
-        let form = rows.form().unwrap();
+        let form = rows.form();
         let mut stream = Vec::new();
         through += usize::from(frames.stencils.write(&form, rows, &mut stream));
         frames.put_rows(store, rows, form).unwrap();
     });
     let differs = built.iter().zip(&own).position(|(a, b)| a != b);
     assert!(built == own, "byte {differs:?} of {}", built.len());
-    assert!(through > 4, "{through}");
+    assert!(through > 20, "{through}");
 }
 
 #[test]
