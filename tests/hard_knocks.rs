@@ -653,3 +653,30 @@ fn a_recovery_that_fails_leaves_nothing() {
     names.sort();
     assert_eq!(names, ["cut.rrd", "s.rrd", "s.toml"]);
 }
+
+/// A chunk that fills seldom is in the file ahead of time, and stays there when no more can be written.
+#[test]
+fn what_waited_is_kept_when_there_is_no_more_room() {
+    let scene = endless().replace("[record]\n", "[record]\nrate = 1\n");
+    let folder = folder_with(&scene);
+    // No file may be larger than 6 MB: some 100 s of states, of numbers less than half a chunk.
+    let script = "trap '' XFSZ; ulimit -f 12000; exec $T run s.toml --save-every 0.02";
+    let done = Command::new("sh")
+        .current_dir(folder.path())
+        .args(["-c", script])
+        .env("T", cargo_bin("torquescope"))
+        .output()
+        .unwrap();
+    let why = said(&done.stderr);
+    assert_eq!(done.status.code(), Some(1), "{why}");
+    assert!(why.contains("writing stopped: File too large"), "{why}");
+    let done = output(folder.path(), &["recover", "s.partial.rrd", "--json"]);
+    assert!(done.status.success(), "{}", said(&done.stderr));
+    let report: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    let until = report["until"].as_f64().unwrap();
+    let survey = record::survey(&folder.path().join("s.rrd")).unwrap();
+    let entities = &survey.recordings[0].entities;
+    let numbers = entities.iter().find(|entity| entity.path == "/numbers/a");
+    let rows = numbers.unwrap().rows;
+    assert!(rows as f64 > 0.5 * until, "{rows} rows of {until} s");
+}

@@ -326,6 +326,7 @@ impl<'s> Simulation<'s> {
                 self.write_notes(&[], first, f64::INFINITY, sink)?;
                 return Ok(());
             };
+            sink.caught_up()?;
             let lost = self.stretch(&stretch, first, sink)?;
             let until = lost.map_or(schedule.now(), |(at, _)| at);
             self.write_notes(&stretch.steps, first, until.time, sink)?;
