@@ -79,7 +79,7 @@ impl Stretch {
 /// deliveries, some 20 MB.
 const LONGEST_STRETCH: u64 = 1024;
 const MOST_STATES: u64 = 200_000;
-/// Steps in a stretch at least: threads are started once a stretch, which costs as much as some
+/// Steps in a stretch at least, where they are not much work: threads are started once a stretch, which costs as much as some
 /// thousand body-steps.
 const SHORTEST_STRETCH: u64 = 64;
 
@@ -147,13 +147,13 @@ impl<'s> Schedule<'s> {
         }
     }
 
-    /// The steps up to the next event, or as many as are taken at once; `None` at the end of the
-    /// scene.
-    pub fn next_stretch(&mut self) -> Option<Stretch> {
+    /// The steps up to the next event, or as many as are taken at once, at most so many; `None` at the
+    /// end of the scene.
+    pub fn next_stretch(&mut self, most: u64) -> Option<Stretch> {
         if !before(self.now, self.end) {
             return None;
         }
-        let target = self.target();
+        let target = self.target(most);
         let mut stretch = Stretch::default();
         while before(self.now, target) {
             let index = stretch.steps.len();
@@ -209,10 +209,10 @@ impl<'s> Schedule<'s> {
     }
 
     /// The earliest of: the next event, the end, the longest stretch.
-    fn target(&self) -> Node {
+    fn target(&self, most: u64) -> Node {
         let bodies = self.scene.bodies.len().max(1) as u64;
         let longest = (MOST_STATES / bodies).clamp(SHORTEST_STRETCH, LONGEST_STRETCH);
-        let on_grid = self.now.grid + longest;
+        let on_grid = self.now.grid + longest.min(most);
         let mut target = Node {
             grid: on_grid,
             rest: 0.0,
@@ -362,7 +362,7 @@ mod tests {
         };
         schedule.steps = done;
         let (mut steps, mut event) = (Vec::new(), None);
-        while let Some(stretch) = schedule.next_stretch() {
+        while let Some(stretch) = schedule.next_stretch(u64::MAX) {
             steps.extend(stretch.steps);
             if !stretch.happenings.is_empty() {
                 event = steps.last().map(|step| step.to);
