@@ -81,6 +81,38 @@ impl<F: FnMut(usize) -> Result<(), SinkError>> Sink for Each<F> {
     }
 }
 
+/// What a stretch gave is not kept back while the next, which may be long, is computed.
+#[test]
+fn what_has_come_is_handed_over_before_more_is_computed() {
+    let taken = AtomicUsize::new(0);
+    let mut sink = Each(|instants| {
+        taken.fetch_add(instants, Ordering::SeqCst);
+        Ok(())
+    });
+    let scene = long();
+    let start = Simulation::new(&scene).subjects()[0].start;
+    beside(&mut sink, |sink| {
+        let at = Instant { time: 0.0, step: 0 };
+        let one = Track {
+            bodies: 0..1,
+            instants: &[at],
+            motions: &[start],
+        };
+        for given in 1..=3 {
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            sink.motions(&one).unwrap();
+            sink.caught_up().unwrap();
+            // Nothing more comes.
+            let since = std::time::Instant::now();
+            while taken.load(Ordering::SeqCst) < given {
+                assert!(since.elapsed().as_secs() < 60, "{given} is kept back");
+                std::thread::yield_now();
+            }
+        }
+    })
+    .unwrap();
+}
+
 #[test]
 fn an_error_of_the_sink_stops_the_run() {
     let mut count = 0;

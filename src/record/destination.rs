@@ -509,6 +509,39 @@ mod tests {
         assert_eq!(now, b"settled, more and other");
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn what_stood_behind_is_put_back_where_there_is_no_more_room() {
+        // No file may grow beyond some 50 KB, and that is no signal.
+        let script = "trap '' XFSZ; ulimit -f 100; exec \"$0\" --ignored --exact \"$1\"";
+        let name = module_path!().split_once("::").unwrap().1;
+        let done = std::process::Command::new("sh")
+            .args(["-c", script])
+            .arg(std::env::current_exe().unwrap())
+            .arg(format!("{name}::no_more_room"))
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&done.stdout);
+        assert!(done.status.success(), "{said}");
+        assert!(said.contains("1 passed"), "{said}");
+    }
+
+    #[test]
+    #[ignore = "is run by another, where files cannot grow"]
+    fn no_more_room() {
+        let folder = tempfile::tempdir().unwrap();
+        let to = Destination::new(folder.path().join("a.rrd"));
+        let mut output = write(&to, &[b"settled"]);
+        output.settle(behind(&[1; 20_000])).unwrap();
+        let before = std::fs::read(partial_name(&to.path)).unwrap();
+        output.write(&[2; 200_000]);
+        for _ in 0..2 {
+            assert!(output.settle(behind(&[3; 30_000])).is_err());
+            let now = std::fs::read(partial_name(&to.path)).unwrap();
+            assert!(now == before);
+        }
+    }
+
     #[test]
     fn what_others_write_or_have_left_is_not_written_over() {
         let folder = tempfile::tempdir().unwrap();

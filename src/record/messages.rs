@@ -44,11 +44,24 @@ pub struct Messages {
     /// Checksums that are none, and how many bytes have none by that.
     spoiled: Vec<Range<u64>>,
     bare: u64,
+    /// What was found by the last checksums.
+    judged: Judged,
     bad_end: Option<Range<u64>>,
     /// Whether what cannot be unpacked is passed over.
     goes_on: bool,
     /// The whole message last read.
     frame: Vec<u8>,
+}
+
+/// What checksums came to, until it is known whether they are those that were written.
+#[derive(Default)]
+struct Judged {
+    /// Where they are.
+    by: Range<u64>,
+    /// Bytes of what they are of.
+    bytes: u64,
+    /// What is not as it was written by them.
+    found: Vec<Range<u64>>,
 }
 
 /// Bytes of one message at most, unpacked: chunks are written by a few hundred rows, and a scene's
@@ -74,6 +87,7 @@ impl Messages {
             damaged: Vec::new(),
             spoiled: Vec::new(),
             bare: 0,
+            judged: Judged::default(),
             bad_end: None,
             goes_on: false,
             frame: Vec::new(),
@@ -305,6 +319,12 @@ impl Messages {
     /// Holds what was read against the checksums that were written of it.
     fn check(&mut self, written: Option<Vec<u64>>) {
         let mut read = std::mem::take(&mut self.unchecked);
+        let now = Judged {
+            by: self.place(),
+            bytes: length(&read),
+            found: Vec::new(),
+        };
+        let before = std::mem::replace(&mut self.judged, now);
         let to = read.last().map_or(0, |(place, _)| place.end);
         let Some(written) = written else {
             // What they were of may be as it was written, or not.
@@ -317,8 +337,8 @@ impl Messages {
         };
         // They begin with those before them, where those can be told from others.
         let first = read.iter().position(|(place, _)| place.start == *start);
-        let Some(first) = first.filter(|first| (*end, sums.len()) == (to, read.len() - first))
-        else {
+        let is_theirs = |first: &usize| (*end, sums.len()) == (to, read.len() - first);
+        let Some(first) = first.filter(is_theirs) else {
             // Another tool has put the messages in another order, or packed them otherwise.
             return;
         };
@@ -326,11 +346,19 @@ impl Messages {
         self.bare += length(&read);
         let differ = of_these.into_iter().zip(sums);
         let differ = differ.filter(|((_, read), sum)| u64::from(*read) != **sum);
+        let found: Vec<Range<u64>> = differ.map(|((place, _), _)| place).collect();
+        if found.contains(&before.by) && !self.spoiled.contains(&before.by) {
+            // They were none, whatever was found by them.
+            self.damaged.retain(|place| !before.found.contains(place));
+            self.spoiled.push(before.by);
+            self.bare += before.bytes;
+        }
         // Those that could not be read are known.
-        let known = std::mem::take(&mut self.damaged);
-        let new = differ.map(|((place, _), _)| place);
-        let new = new.filter(|place| !known.contains(place) && !self.spoiled.contains(place));
-        self.damaged = known.iter().cloned().chain(new).collect();
+        let is_new =
+            |place: &Range<u64>| !self.damaged.contains(place) && !self.spoiled.contains(place);
+        let new: Vec<Range<u64>> = found.into_iter().filter(is_new).collect();
+        self.damaged.extend(new.iter().cloned());
+        self.judged.found = new;
     }
 
     fn stop<T>(&mut self, why: &str) -> Option<T> {
@@ -414,4 +442,85 @@ pub fn quietly<T>(run: impl FnOnce() -> T) -> Result<T, String> {
         let text = text.or_else(|| panic.downcast_ref::<&str>().map(ToString::to_string));
         format!("it cannot be decoded: {}", text.unwrap_or_default())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::destination::Destination;
+    use super::super::rrd::RrdFile;
+    use super::super::rrd::tests::fill;
+    use super::*;
+
+    fn read(path: &Path) -> (Messages, Vec<Range<u64>>) {
+        let mut messages = Messages::open(path).unwrap().going_on();
+        let mut checksums = Vec::new();
+        while let Some(message) = messages.next() {
+            if let LogMsg::ArrowMsg(_, chunk) = message
+                && is_checksums(&chunk)
+            {
+                checksums.push(messages.place());
+            }
+        }
+        (messages, checksums)
+    }
+
+    /// For changed checksums nothing is given up that is as it was written.
+    #[test]
+    fn what_has_lost_its_checksums_is_not_damaged() {
+        let folder = tempfile::tempdir().unwrap();
+        let to = Destination::new(folder.path().join("a.rrd"));
+        let mut file = RrdFile::create(&to, "a").unwrap();
+        file.begin_recording().unwrap();
+        fill(&mut file, "/a", 0..120_000);
+        file.finish().unwrap();
+        let bytes = std::fs::read(&to.path).unwrap();
+        let (whole, checksums) = read(&to.path);
+        assert!(whole.flaw().is_none() && checksums.len() >= 4);
+        let (mut spoiled, mut unreadable) = (0, 0);
+        // Beside the length, behind which nothing is found.
+        let place = &checksums[1];
+        let step = (place.end - place.start) as usize / 12;
+        let places = (place.start + 16..place.end).step_by(step);
+        for at in places {
+            let mut changed = bytes.clone();
+            changed[at as usize] ^= 1 << (at % 8);
+            std::fs::write(&to.path, &changed).unwrap();
+            let (messages, _) = read(&to.path);
+            assert!(messages.flaw().is_some(), "{at}");
+            if messages.is_stopped() {
+                continue;
+            }
+            let damaged = messages.damaged();
+            assert!(damaged.iter().all(|one| one == place), "{at}: {damaged:?}");
+            assert!(messages.without_checksums() >= CHECKED, "{at}");
+            spoiled += messages.spoiled.len();
+            unreadable += damaged.len();
+        }
+        // Both kinds there are.
+        assert!(spoiled > 0 && unreadable > 0, "{spoiled}, {unreadable}");
+    }
+
+    /// Bytes between checksums, about.
+    const CHECKED: u64 = 1 << 20;
+
+    #[test]
+    fn no_more_memory_is_asked_for_than_a_message_can_need() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.rrd");
+        let mut file = RrdFile::create(&Destination::new(&path), "a").unwrap();
+        file.begin_recording().unwrap();
+        fill(&mut file, "/a", 0..100);
+        file.finish().unwrap();
+        let mut bytes = std::fs::read(&path).unwrap();
+        let length = LARGEST_MESSAGE + 1;
+        bytes[20..28].copy_from_slice(&length.to_le_bytes());
+        std::fs::write(&path, &bytes).unwrap();
+        // As long as it says, on a disk that stores no zeros.
+        let file = File::options().write(true).open(&path).unwrap();
+        file.set_len(2 * length).unwrap();
+        let mut messages = Messages::open(&path).unwrap();
+        assert!(messages.next().is_none());
+        assert_eq!(messages.flaw().as_deref(), Some(TOO_LONG));
+        assert!(messages.frame.capacity() < 1 << 20);
+    }
 }

@@ -359,3 +359,107 @@ impl Drop for RrdFile {
         }
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::super::columns::{Ends, numbers};
+    use super::super::destination::partial_name;
+    use super::super::messages::Messages;
+    use super::*;
+    use crate::math::draw;
+    use crate::trace;
+    use rerun::ComponentDescriptor;
+    use std::ops::Range;
+    use std::path::Path;
+
+    /// Writes rows of a number that cannot be packed, a thousand a chunk.
+    pub fn fill(file: &mut RrdFile, path: &str, rows: Range<u64>) {
+        let rows: Vec<u64> = rows.collect();
+        for rows in rows.chunks(1000) {
+            let mut times = Times::default();
+            for &step in rows {
+                let time = step as f64 * 1e-3;
+                times.push(trace::Instant { time, step });
+            }
+            let values = rows.iter().map(|&step| draw::unit(3, step)).collect();
+            let ends = Ends::uniform(rows.len(), 1);
+            let column = numbers(ComponentDescriptor::partial("x"), values, ends);
+            file.columns(path, &times, vec![column]).unwrap();
+        }
+    }
+
+    /// The rows of each entity in what a killed program would leave, and what is wrong with it.
+    fn now(path: &Path) -> (HashMap<String, u64>, Messages) {
+        let mut messages = Messages::open(&partial_name(path)).unwrap().going_on();
+        let mut rows = HashMap::new();
+        while let Some((_, chunk)) = messages.next_chunk() {
+            *rows.entry(chunk.entity_path().to_string()).or_default() += chunk.num_rows() as u64;
+        }
+        (rows, messages)
+    }
+
+    #[test]
+    fn what_waits_stays_in_the_file_while_more_is_settled() {
+        let folder = tempfile::tempdir().unwrap();
+        let to = Destination::new(folder.path().join("a.rrd"));
+        let mut file = RrdFile::create(&to, "a").unwrap();
+        file.begin_recording().unwrap();
+        fill(&mut file, "/fast", 0..1000);
+        file.begin_tail();
+        fill(&mut file, "/slow", 0..3);
+        fill(&mut file, "/other", 0..4);
+        file.end_tail().unwrap();
+        // Some megabytes, in which nothing more is written ahead of time.
+        fill(&mut file, "/fast", 1000..200_000);
+        let (rows, messages) = now(&to.path);
+        assert_eq!((rows["/slow"], rows["/other"]), (3, 4));
+        assert!(rows["/fast"] > 100_000, "{rows:?}");
+        assert_eq!((messages.unread(), messages.damaged()), (0, [].as_slice()));
+        // Once they are settled they are there once.
+        fill(&mut file, "/slow", 0..5);
+        fill(&mut file, "/fast", 200_000..300_000);
+        let (rows, _) = now(&to.path);
+        assert_eq!((rows["/slow"], rows["/other"]), (5, 4));
+        // And nothing of it when all is settled.
+        fill(&mut file, "/other", 0..6);
+        file.finish().unwrap();
+        let mut same =
+            RrdFile::create(&Destination::new(folder.path().join("b.rrd")), "a").unwrap();
+        same.begin_recording().unwrap();
+        fill(&mut same, "/fast", 0..200_000);
+        fill(&mut same, "/slow", 0..5);
+        fill(&mut same, "/fast", 200_000..300_000);
+        fill(&mut same, "/other", 0..6);
+        same.finish().unwrap();
+        let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+        assert!(read("a.rrd") == read("b.rrd"));
+    }
+
+    /// What is in the file has checksums, however little it is and whether it waits or not.
+    #[test]
+    fn no_changed_byte_of_what_a_killed_program_leaves_passes() {
+        let folder = tempfile::tempdir().unwrap();
+        let to = Destination::new(folder.path().join("a.rrd"));
+        let mut file = RrdFile::create(&to, "a").unwrap();
+        file.begin_recording().unwrap();
+        fill(&mut file, "/settled", 0..100);
+        file.begin_tail();
+        fill(&mut file, "/waiting", 0..100);
+        file.end_tail().unwrap();
+        let partial = partial_name(&to.path);
+        let bytes = std::fs::read(&partial).unwrap();
+        let mut messages = Messages::open(&partial).unwrap();
+        while messages.next().is_some() {}
+        // The last checksums themselves have none.
+        let end = messages.place().start;
+        assert!(end > 2000 && messages.unread() == 0);
+        for at in (12..end as usize).step_by(7) {
+            let mut changed = bytes.clone();
+            changed[at] ^= 1 << (at % 8);
+            std::fs::write(&partial, &changed).unwrap();
+            let (_, messages) = now(&to.path);
+            let told = !messages.damaged().is_empty() || messages.is_stopped();
+            assert!(told || messages.unread() > 0, "{at}");
+        }
+    }
+}

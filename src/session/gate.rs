@@ -62,6 +62,10 @@ impl Sink for Gate<'_> {
         }
     }
 
+    fn caught_up(&mut self) -> Result<(), SinkError> {
+        self.inner.caught_up()
+    }
+
     fn wants_fingerprints(&self) -> bool {
         self.from != From::Never && self.inner.wants_fingerprints()
     }

@@ -314,6 +314,42 @@ impl Group {
         self.done + now.unwrap_or_default()
     }
 
+    /// Whether it takes the clock's steps, or pieces of them, and no others.
+    pub fn is_paced_by_the_clock(&self) -> bool {
+        self.steps != Some(Kind::Adaptive)
+    }
+
+    /// Radians that the fastest of its bodies turns in a step of `h` as they turn now.
+    pub fn farthest_turn(&self, h: f64) -> f64 {
+        let speeds = (0..self.members.len()).map(|lane| self.state.get(lane).omega_w.norm());
+        h * speeds.fold(0.0, f64::max)
+    }
+
+    /// What its method declares of a step of the clock, in steps of rk4; nothing where it has steps of its own.
+    pub fn work_a_step(&self) -> f64 {
+        let Some(choice) = self.choice.filter(|_| self.is_paced_by_the_clock()) else {
+            return 0.0;
+        };
+        let weight = choice.method.info().cost.weight;
+        // Of a block those weigh least that take its lanes at once. (What two engines do is as light, and goes body by
+        // body.)
+        let bodies = match weight <= 1.0 {
+            true => 1,
+            false => self.members.len(),
+        };
+        weight * f64::from(choice.pieces) * bodies as f64
+    }
+
+    /// The work of steps of its own since it set out, in steps of rk4.
+    pub fn counted_work(&self) -> f64 {
+        match (&self.choice, &self.stepper) {
+            (Some(choice), Some(stepper)) if !self.is_paced_by_the_clock() => {
+                choice.method.info().cost.weight * stepper.work().steps as f64
+            }
+            _ => 0.0,
+        }
+    }
+
     /// The effects of the scene that are on, and the active events that concern this group.
     pub fn load(&mut self, scene: &Scene, acting: &Acting) {
         let bodies = scene.bodies[self.members.clone()].iter().enumerate();

@@ -2,6 +2,7 @@
 
 mod choose;
 mod group;
+mod pace;
 mod resume;
 mod schedule;
 mod script;
@@ -26,6 +27,7 @@ use crate::trace::{
 };
 use group::Group;
 use nalgebra::Vector3;
+use pace::Pace;
 use schedule::{Schedule, Stretch};
 use script::{Acting, Applied, Done, Happening, Lasting};
 use std::cell::RefCell;
@@ -60,6 +62,8 @@ pub struct Simulation<'s> {
     timed: bool,
     /// Mean wall time of the last stretch's steps of a group, s.
     step_time: Option<f64>,
+    /// How long a stretch may be.
+    pace: Pace,
     /// Set by who wants the run to end.
     stop: Option<&'s AtomicBool>,
 }
@@ -181,6 +185,7 @@ impl<'s> Simulation<'s> {
             judged: streams(&["error", "drift", "numbers"]),
             timed: scene.record.streams.contains("step_time"),
             step_time: None,
+            pace: Pace::default(),
             stop: None,
         };
         if scene.record.streams.contains("sources") {
@@ -347,16 +352,21 @@ impl<'s> Simulation<'s> {
                 let Instant { time, step } = first;
                 return Err(SimError::Stopped { time, step });
             }
-            let Some(stretch) = schedule.next_stretch() else {
+            let most = self.pace.steps(&self.groups, self.scene.step);
+            let Some(stretch) = schedule.next_stretch(most) else {
                 if schedule.is_over() {
                     self.write_notes(&[], first, f64::INFINITY, sink)?;
                 }
                 return Ok(());
             };
+            sink.caught_up()?;
             let lost = match stretch.steps.is_empty() {
                 // Something happens where it stands.
                 true => None,
-                false => self.stretch(&stretch, first, sink)?,
+                false => {
+                    self.pace.take(stretch.steps.len(), &self.groups);
+                    self.stretch(&stretch, first, sink)?
+                }
             };
             let until = lost.map_or(schedule.now(), |(at, _)| at);
             self.write_notes(&stretch.steps, first, until.time, sink)?;
@@ -392,6 +402,9 @@ impl<'s> Simulation<'s> {
     fn set_out(&mut self, bodies: &[usize], schedule: &Schedule<'_>, chooser: &mut dyn Choose) {
         let mut groups: Vec<usize> = bodies.iter().map(|&body| self.home[body]).collect();
         groups.dedup();
+        if !groups.is_empty() {
+            self.pace.set_out();
+        }
         let now = schedule.now().time;
         for group in groups {
             let members = self.groups[group].members.clone();

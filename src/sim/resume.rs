@@ -5,6 +5,7 @@
 //! bit. So a few stored states suffice to go back anywhere.
 
 use super::group::Group;
+use super::pace::Pace;
 use super::schedule::{Parked, Position, Schedule};
 use super::script::Acting;
 use super::sources;
@@ -126,6 +127,8 @@ impl Parts {
             timed,
             step_time,
             stop: _,
+            // Counted anew where it is taken up.
+            pace: _,
         } = simulation;
         Self {
             subjects,
@@ -165,6 +168,7 @@ impl Parts {
             timed: self.timed,
             step_time: self.step_time,
             stop: None,
+            pace: Pace::default(),
         }
     }
 }

@@ -83,7 +83,7 @@ impl Stretch {
 /// deliveries, some 20 MB.
 const LONGEST_STRETCH: u64 = 1024;
 const MOST_STATES: u64 = 200_000;
-/// Steps in a stretch at least: threads are started once a stretch, which costs as much as some
+/// Steps in a stretch at least, where they are not much work: threads are started once a stretch, which costs as much as some
 /// thousand body-steps.
 const SHORTEST_STRETCH: u64 = 64;
 
@@ -154,15 +154,15 @@ impl<'s> Schedule<'s> {
         }
     }
 
-    /// The steps up to the next event, or as many as are taken at once; `None` at the end of the
-    /// scene, or where it is to halt.
-    pub fn next_stretch(&mut self) -> Option<Stretch> {
+    /// The steps up to the next event, or as many as are taken at once, at most so many; `None` at the
+    /// end of the scene, or where it is to halt.
+    pub fn next_stretch(&mut self, most: u64) -> Option<Stretch> {
         let happens_here = self.coming().is_some_and(|at| same(at, self.now));
         let halts = self.most == 0 || self.halt.is_some_and(|halt| !before(self.now, halt));
         if (halts || self.is_over()) && !happens_here {
             return None;
         }
-        let target = self.target();
+        let target = self.target(most);
         let mut stretch = Stretch::default();
         if happens_here {
             stretch.kept.extend(self.last);
@@ -228,10 +228,10 @@ impl<'s> Schedule<'s> {
     }
 
     /// The earliest of: the next event, the end, the longest stretch.
-    fn target(&self) -> Node {
+    fn target(&self, most: u64) -> Node {
         let bodies = self.scene.bodies.len().max(1) as u64;
         let longest = (MOST_STATES / bodies).clamp(SHORTEST_STRETCH, LONGEST_STRETCH);
-        let on_grid = self.now.grid + longest;
+        let on_grid = self.now.grid + longest.min(most);
         let mut target = Node {
             grid: on_grid,
             rest: 0.0,
@@ -388,7 +388,7 @@ mod tests {
         };
         schedule.steps = done;
         let (mut steps, mut event) = (Vec::new(), None);
-        while let Some(stretch) = schedule.next_stretch() {
+        while let Some(stretch) = schedule.next_stretch(u64::MAX) {
             steps.extend(stretch.steps);
             if !stretch.happenings.is_empty() {
                 event = steps.last().map(|step| step.to);

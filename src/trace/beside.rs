@@ -1,8 +1,9 @@
 //! A sink on a thread of its own, so that a stepper hardly waits for what is recorded.
 //!
-//! What is delivered is copied into batches of about a megabyte, or of what came within a tenth of a second. A few of them may be on their way; then the
-//! stepper waits, so nothing is lost and memory does not grow with the length of a run. The sink gets the same
-//! calls in the same order as without it.
+//! What is delivered is copied into batches of about a megabyte, or of what came within a tenth of a second; before more
+//! has to be computed, of what came within a hundredth. A few of them may be on their way; then the stepper waits, so
+//! nothing is lost and memory does not grow with the length of a run. The sink gets the same calls in the same order as
+//! without it.
 
 use super::{Instant, Motion, Note, Poses, Sample, Sink, SinkError, Track};
 use std::ops::Range;
@@ -14,6 +15,9 @@ use std::time::{Duration, Instant as Clock};
 const BATCH: usize = 1 << 20;
 /// How long a call waits for others at most, and a sink to hear that none comes.
 const SOON: Duration = Duration::from_millis(100);
+/// How long a call may have waited where it is not known when the next comes: handing a batch over takes some
+/// microseconds.
+const AT_ONCE: Duration = Duration::from_millis(10);
 /// Batches that wait for the sink at most.
 const WAITING: usize = 4;
 
@@ -184,6 +188,13 @@ impl Sink for Beside<'_> {
     fn note(&mut self, at: Instant, note: &Note) -> Result<(), SinkError> {
         let bytes = size_of::<Note>() + note.text.len();
         self.call(Call::Note(at, note.clone()), bytes)
+    }
+
+    fn caught_up(&mut self) -> Result<(), SinkError> {
+        match self.batch.calls.is_empty() || self.sent.elapsed() < AT_ONCE {
+            true => Ok(()),
+            false => self.send(),
+        }
     }
 
     fn wants_fingerprints(&self) -> bool {

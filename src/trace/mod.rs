@@ -98,6 +98,11 @@ pub trait Sink {
 
     fn note(&mut self, at: Instant, note: &Note) -> Result<(), SinkError>;
 
+    /// All that is known has come: what comes next has to be computed first, which may take a while.
+    fn caught_up(&mut self) -> Result<(), SinkError> {
+        Ok(())
+    }
+
     /// Nothing has come for a while.
     fn idle(&mut self) -> Result<(), SinkError> {
         Ok(())
