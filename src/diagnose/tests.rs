@@ -1,0 +1,1 @@
+//! Tests of the room's own parts; the zoo (tests/zoo) tests the whole.
