@@ -18,8 +18,10 @@ pub struct Drift {
     pub part: f64,
     /// Its standard error.
     pub error: f64,
-    /// The energy coefficient; 0 where nothing is to be seen.
+    /// The energy coefficient, step by step; 0 where nothing is to be seen.
     pub eta: f64,
+    /// The same from the drift as a whole, which noise leaves alone, and its error.
+    pub eta_of_drift: (f64, f64),
 }
 
 /// None where steps are missing, or too few.
@@ -58,13 +60,11 @@ pub fn drift(m: &Motion, inertia: &Matrix3<f64>, tau_w: &[Vector3<f64>]) -> Opti
         explicit += 0.5 * h * h * turning.dot(&(inverse * (turning + tau)));
     }
     let solution = squares.solve()?;
+    let over = |x: f64| if explicit > 0.0 { x / explicit } else { 0.0 };
     (mean > 0.0 && mean.is_finite()).then_some(Drift {
         part: solution.x[1] / mean,
         error: solution.error[1] / mean,
-        eta: if explicit > 0.0 {
-            gained / explicit
-        } else {
-            0.0
-        },
+        eta: over(gained),
+        eta_of_drift: (over(solution.x[1]), over(solution.error[1])),
     })
 }

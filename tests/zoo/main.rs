@@ -25,7 +25,7 @@ fn tuned() {
     let wanted = std::env::var("ZOO").unwrap_or_default();
     let (mut right, mut all) = (0, 0);
     let mut wrong: BTreeMap<String, usize> = BTreeMap::new();
-    for recording in zoo(1, 8) {
+    for recording in zoo(std::env::var("SEED").map_or(1, |s| s.parse().unwrap()), 8) {
         if !recording.name.contains(&wanted) {
             continue;
         }
