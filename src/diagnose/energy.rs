@@ -18,6 +18,8 @@ pub struct Drift {
     pub part: f64,
     /// Its standard error.
     pub error: f64,
+    /// What the torques moved to and fro, Σ |h τ·ω|, over the mean of E.
+    pub flow: f64,
     /// The energy coefficient, step by step; 0 where nothing is to be seen.
     pub eta: f64,
     /// The same from the drift as a whole, which noise leaves alone, and its error.
@@ -35,7 +37,7 @@ pub fn drift(m: &Motion, inertia: &Matrix3<f64>, tau_w: &[Vector3<f64>]) -> Opti
     let blocks = 40;
     let length = steps / blocks;
     let (mut work, mut sum, mut time, mut inside, mut mean) = (0.0, 0.0, 0.0, 0, 0.0);
-    let (mut gained, mut explicit) = (0.0, 0.0);
+    let (mut gained, mut explicit, mut flow) = (0.0, 0.0, 0.0);
     let mut squares = Squares::<2>::new();
     let span = m.times[steps] - m.times[0];
     for k in 0..steps {
@@ -55,6 +57,7 @@ pub fn drift(m: &Motion, inertia: &Matrix3<f64>, tau_w: &[Vector3<f64>]) -> Opti
         let mid = (a + b) * 0.5;
         let done = h * tau.dot(&mid);
         work += done;
+        flow += done.abs();
         gained += energy(b) - e - done;
         let turning = -mid.cross(&(inertia * mid));
         explicit += 0.5 * h * h * turning.dot(&(inverse * (turning + tau)));
@@ -64,6 +67,7 @@ pub fn drift(m: &Motion, inertia: &Matrix3<f64>, tau_w: &[Vector3<f64>]) -> Opti
     (mean > 0.0 && mean.is_finite()).then_some(Drift {
         part: solution.x[1] / mean,
         error: solution.error[1] / mean,
+        flow: flow / mean,
         eta: over(gained),
         eta_of_drift: (over(solution.x[1]), over(solution.error[1])),
     })

@@ -233,8 +233,12 @@ const MOST: usize = 48_000;
 impl Steps {
     /// None where there are not three windows.
     pub fn new(m: &Motion, keep: impl Fn(usize) -> bool) -> Option<Self> {
+        Self::of_length(m, Self::window(m, m.noisy()), keep)
+    }
+
+    /// In windows of so many steps.
+    pub fn of_length(m: &Motion, length: usize, keep: impl Fn(usize) -> bool) -> Option<Self> {
         let noisy = m.noisy();
-        let length = Self::window(m, noisy);
         let mut m_used = m.usable.clone();
         for (k, usable) in m_used.iter_mut().enumerate() {
             *usable &= keep(k);

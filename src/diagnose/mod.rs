@@ -116,6 +116,9 @@ fn by_dynamics(case: &Case, mut verdict: Verdict) -> Verdict {
         Outcome::Fault(found) => accuse(verdict, found),
         Outcome::CannotTell(why, remedy) => cannot_tell(verdict, why, remedy),
         Outcome::Fine { evidence, drift } => {
+            if let Some(found) = causes::long_way(case, m) {
+                return accuse(verdict, found);
+            }
             verdict.answer = Answer::NoFault;
             verdict.cause = if m.flips.is_empty() {
                 "none"

@@ -58,6 +58,8 @@ pub enum Fault {
     CoarseAttitude,
     NotNormalised,
     DoubleCover,
+    /// A controller that holds an attitude by τ = -k u - c ω, u of a q whose sign flips now and then.
+    LongWay,
 }
 
 /// How it is stepped.
@@ -128,6 +130,8 @@ pub struct Run {
     pub rows: usize,
     /// A floor: |ω| and its direction jump here, unlogged, so many times.
     pub knocks: usize,
+    /// The floor: from here to there a torque against the spin that nobody writes down.
+    pub contact: (f64, f64),
     /// A torque that nobody writes down.
     pub unlogged: Option<Waves>,
 }
@@ -224,7 +228,7 @@ impl Mind<'_> {
     /// Runge and Kutta's, on the rotation vector from the attitude at the beginning, to second order in it: steps are short.
     fn fine(&self, q: Q, omega: V, torque: V, h: f64) -> (Q, V) {
         let rate = |v: V, w: V| {
-            // dexp⁻¹: v̇ = ω - ½ v×ω... for turns that go on the left: + ½ ω × v + 1/12 v × (v × ω).
+            // v̇ = dexp⁻¹ ω = ω - ½ v × ω + 1/12 v × (v × ω) for turns that go on the left.
             let vw = cross(v, w);
             add(w, add(scaled(vw, -0.5), scaled(cross(v, vw), 1.0 / 12.0)))
         };
@@ -309,7 +313,15 @@ impl Run {
             } else {
                 x
             };
-            let torque = self.torque.as_ref().map_or([0.0; 3], |w| w.at(t));
+            let mut torque = self.torque.as_ref().map_or([0.0; 3], |w| w.at(t));
+            if self.fault == Fault::LongWay {
+                if k % 41 == 40 {
+                    q = q.map(|x| -x);
+                }
+                let i = self.body.inertia;
+                let k = (i[0][0] + i[1][1] + i[2][2]) * 2.0;
+                torque = add(scaled([q[0], q[1], q[2]], -k), scaled(omega, -0.02 * k));
+            }
             let (force, point) = self.force.as_ref().map_or(([0.0; 3], centre), |(w, p)| {
                 (w.at(t), add(centre, apply(&r, *p)))
             });
@@ -340,6 +352,11 @@ impl Run {
             last = acts;
             if let Some(waves) = &self.unlogged {
                 tau = add(tau, waves.at(t));
+            }
+            if t >= self.contact.0 && t < self.contact.1 {
+                let i = self.body.inertia;
+                let c = 0.4 * (i[0][0] + i[1][1] + i[2][2]);
+                tau = add(tau, scaled(add(omega, [0.0, 2.0, 0.5]), -c));
             }
             if self.knocks > 0 && k > 0 && k % (self.rows / (self.knocks + 1)) == 0 {
                 let turn = apply(

@@ -34,6 +34,14 @@ struct Pen {
     no_bodies: bool,
     /// Every so many rows.
     every: usize,
+    /// Numbers are printed with so many digits; 0: all.
+    digits: i32,
+    /// Numbers are f32.
+    single: bool,
+    /// Some rows are missing, some hold what is no number.
+    holes: bool,
+    /// ω is another body's.
+    stranger: bool,
 }
 
 fn written(run: &Run, pen: Pen, name: &str, draw: &mut Draw) -> Logged {
@@ -44,7 +52,10 @@ fn written(run: &Run, pen: Pen, name: &str, draw: &mut Draw) -> Logged {
     };
     let mut rows = Rows::default();
     let mut flip = 1.0;
-    for row in steps.iter().step_by(pen.every.max(1)) {
+    for (k, row) in steps.iter().step_by(pen.every.max(1)).enumerate() {
+        if pen.holes && k % 97 == 90 {
+            continue;
+        }
         let r = matrix(row.q);
         let mut x = sub(row.x, apply(&r, run.body.centre));
         let (mut q, mut omega) = (row.q, row.omega);
@@ -72,6 +83,32 @@ fn written(run: &Run, pen: Pen, name: &str, draw: &mut Draw) -> Logged {
             }
             _ => {}
         }
+        if pen.stranger {
+            let t = row.t;
+            omega = [
+                2.0 * libm::sin(3.0 * t),
+                1.0 + libm::cos(2.0 * t),
+                3.0 * libm::sin(t + 1.0),
+            ];
+        }
+        let print = |x: f64| {
+            if pen.single {
+                f64::from(x as f32)
+            } else if pen.digits > 0 && x != 0.0 {
+                let unit =
+                    libm::exp10(libm::floor(libm::log10(x.abs())) + 1.0 - f64::from(pen.digits));
+                (x / unit).round() * unit
+            } else {
+                x
+            }
+        };
+        (x, q, omega) = (x.map(print), q.map(print), omega.map(print));
+        if pen.holes && k % 131 == 50 {
+            omega[1] = f64::NAN;
+        }
+        if pen.holes && k % 151 == 70 {
+            q = [0.0; 4];
+        }
         rows.times.push(row.t);
         if !pen.no_position {
             rows.positions.push(x);
@@ -82,7 +119,7 @@ fn written(run: &Run, pen: Pen, name: &str, draw: &mut Draw) -> Logged {
         if !pen.no_omega {
             rows.omegas.push(omega);
         }
-        if run.torque.is_some() && !pen.no_torque {
+        if (run.torque.is_some() || run.fault == Fault::LongWay) && !pen.no_torque {
             rows.torques.push(row.torque);
         }
         if run.force.is_some() {
@@ -238,6 +275,7 @@ fn rich(draw: &mut Draw, loads: Loads, tilted: bool, offset: bool) -> Run {
         rate,
         rows: (seconds * rate) as usize,
         knocks: 0,
+        contact: (0.0, 0.0),
         unlogged: None,
     }
 }
@@ -253,6 +291,10 @@ fn energy_off(run: &Run) -> f64 {
     let rows = run.rows();
     let (first, last) = (&rows[0], &rows[rows.len() - 1]);
     energy(last, &run.body.inertia) / energy(first, &run.body.inertia) - 1.0
+}
+
+fn fastest(run: &Run) -> f64 {
+    run.rows().iter().map(|r| norm(r.omega)).fold(0.0, f64::max)
 }
 
 /// Every recording of a seed, `each` for every fault.
@@ -333,6 +375,7 @@ pub const FAULTS: &[(&str, Option<Loads>)] = &[
     ("sleep", Some(Loads::None)),
     ("precision", None),
     ("norm-drift", None),
+    ("double-cover", Some(Loads::None)),
 ];
 
 fn faulty(cause: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
@@ -468,13 +511,46 @@ fn faulty(cause: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
             run.rows = (4.0 * run.rate) as usize;
             Fault::NotNormalised
         }
+        "double-cover" => {
+            run.rate = 100.0;
+            run.rows = 600;
+            Fault::LongWay
+        }
         _ => unreachable!("{cause}"),
     };
+    if i % 7 == 4 && cause != "norm-drift" {
+        pen.digits = 7;
+    }
+    // Many an engine leaves the gyroscopic term out besides.
+    let besides = matches!(
+        cause,
+        "inertia-not-rotated"
+            | "inertia-rotated-backwards"
+            | "inertia-not-inverted"
+            | "torque-in-body-frame"
+            | "lever-point-stale"
+            | "lever-from-origin"
+            | "inertia-scale"
+            | "force-lifetime"
+    );
+    if besides && i % 4 == 2 {
+        run.gyroscopic = false;
+        run.stepping = Stepping::SemiImplicit(1);
+    } else if cause.starts_with("products") || cause.starts_with("gyroscopic") || besides {
+        if i % 8 == 5 {
+            run.stepping = Stepping::SemiImplicit(2);
+        }
+    }
     match run.fault {
         Fault::LeverStale | Fault::LeverFromOrigin => {
             // Levers of metres: forces that do not throw the body about.
             let (waves, _) = run.force.as_mut().unwrap();
             waves.amplitude = scaled(waves.amplitude, 0.15);
+            // None that spins it up without end.
+            while fastest(&run) > 0.3 * run.rate {
+                let (waves, _) = run.force.as_mut().unwrap();
+                waves.amplitude = scaled(waves.amplitude, 0.6);
+            }
         }
         Fault::NeverCleared | Fault::ClearedLate => {
             let (waves, _) = run.force.as_mut().unwrap();
@@ -523,6 +599,11 @@ pub const CONTROLS: &[&str] = &[
     "far from the origin",
     "fast",
     "slow",
+    "printed with six digits",
+    "single precision",
+    "a while on the floor",
+    "rows lost, and numbers that are none",
+    "a controller that minds the sign",
 ];
 
 fn right(control: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
@@ -532,6 +613,7 @@ fn right(control: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
         "an offset centre of mass" | "every fourth step logged" | "far from the origin" => {
             [Loads::None, Loads::Torque, Loads::Force][i % 3]
         }
+        "a controller that minds the sign" => Loads::Torque,
         "signs of q that flip" | "no positions" | "products of inertia" => {
             [Loads::None, Loads::Torque][i % 2]
         }
@@ -586,7 +668,9 @@ fn right(control: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
             torque.frequency = [0.0; 3];
             torque.phase = [1.5; 3];
         }
-        "signs of q that flip" => run.fault = Fault::DoubleCover,
+        "signs of q that flip" | "a controller that minds the sign" => {
+            run.fault = Fault::DoubleCover
+        }
         "every fourth step logged" => {
             run.rate = 960.0;
             run.rows = 4_000;
@@ -613,6 +697,13 @@ fn right(control: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
             run.rate = 500.0;
             run.rows = 1_500;
         }
+        "printed with six digits" => pen.digits = 6,
+        "single precision" => pen.single = true,
+        "a while on the floor" => {
+            let end = run.rows as f64 / run.rate;
+            run.contact = (0.3 * end, 0.55 * end);
+        }
+        "rows lost, and numbers that are none" => pen.holes = true,
         "slow" => {
             run.omega = scaled(run.omega, 0.4 / speed);
             run.rate = 60.0;
@@ -636,6 +727,7 @@ pub const BLIND: &[&str] = &[
     "no attitudes",
     "a torque that nobody wrote down",
     "a cube under a torque about the axis of its spin",
+    "the omega of another body",
 ];
 
 fn hidden(blind: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
@@ -664,6 +756,7 @@ fn hidden(blind: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
             run.rows = 200;
         }
         "no bodies file" => pen.no_bodies = true,
+        "the omega of another body" => pen.stranger = true,
         "no attitudes" => pen.no_attitude = true,
         "a torque that nobody wrote down" => {
             let more = rich(draw, Loads::Torque, false, false);

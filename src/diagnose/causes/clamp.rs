@@ -32,9 +32,14 @@ fn judge(d: &Dynamics) -> Option<Explained> {
     let near = if noisy { 3.0 * m.sigma } else { 1e-6 * top };
     let at_top: Vec<bool> = speeds.iter().map(|s| (s - top).abs() <= near).collect();
     let rows = longest(&at_top);
-    if rows < if noisy { 20 } else { 5 } {
-        return None;
-    }
+    // Windows that fit into the plateau.
+    let shorter;
+    let d = if noisy && d.steps.length > rows / 3 {
+        shorter = d.in_windows_of((rows / 3).max(8))?;
+        &shorter
+    } else {
+        d
+    };
     let predicted = d.predict(Law::RIGHT, false)?;
     let n = d.steps.windows.len();
     let mut on = vec![false; n];
@@ -71,9 +76,6 @@ fn judge(d: &Dynamics) -> Option<Explained> {
             whole += left.norm();
             broken += 1;
         }
-    }
-    if broken < 2 || against < if noisy { 0.8 } else { 0.95 } * whole {
-        return None;
     }
     let left = free;
     Some(

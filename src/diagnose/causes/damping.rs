@@ -20,24 +20,25 @@ fn judge(d: &Dynamics) -> Option<Explained> {
     let square = d.steps.of_omega(|w| -w * w.norm());
     let mut best: Option<Explained> = None;
     for law in [Law::RIGHT, Law::RIGHT.gyroscopic(Gyroscopic::Off)] {
-        let base = d.predict(law, false)?;
-        for (feature, name, unit) in [(&linear, "k1", "1/s"), (&square, "k2", "")] {
-            let fit = fit(
-                &d.steps.measured,
-                &base,
-                Some((feature, [0.0, 1e6])),
-                &d.kept,
-            );
-            // Windows overlap by half: √2 more than the standard error.
-            if fit.coefficient > 8.0 * 1.5 * fit.error
-                && best.as_ref().is_none_or(|b| fit.left < b.fit.left)
-            {
-                let (k, error) = (fit.coefficient, fit.error);
-                best = Some(
-                    Explained::new(DAMPING.id, fit)
-                        .with(name, k, unit)
-                        .with("error", error, unit),
+        for base in d.staged(law) {
+            for (feature, name, unit) in [(&linear, "k1", "1/s"), (&square, "k2", "")] {
+                let fit = fit(
+                    &d.steps.measured,
+                    &base,
+                    Some((feature, [0.0, 1e6])),
+                    &d.kept,
                 );
+                // Windows overlap by half: half as much again as the standard error.
+                if fit.coefficient > 8.0 * 1.5 * fit.error
+                    && best.as_ref().is_none_or(|b| fit.left < b.fit.left)
+                {
+                    let (k, error) = (fit.coefficient, fit.error);
+                    best = Some(
+                        Explained::new(DAMPING.id, fit)
+                            .with(name, k, unit)
+                            .with("error", error, unit),
+                    );
+                }
             }
         }
     }

@@ -63,23 +63,26 @@ pub(super) const WRONG_POINT: Cause = Cause {
 
 /// α = α_g + s α_τ, s = 1/c: the gyroscopic term does not depend on c.
 fn scale(d: &Dynamics) -> Option<Explained> {
-    let gyroscopic = d.predict(Law::RIGHT, true)?;
-    let torque = d.torque_alone()?;
+    d.torque_alone()?;
+    let without = d.staged(Law::RIGHT.gyroscopic(Gyroscopic::Off));
+    let with = d.staged(Law::RIGHT);
     let mut best: Option<Explained> = None;
-    for base in [gyroscopic, d.nothing()] {
-        let fit = fit(
-            &d.steps.measured,
-            &base,
-            Some((&torque, [1e-12, 1e12])),
-            &d.kept,
-        );
-        let s = fit.coefficient;
-        if s <= 0.0 || fit.error > 0.02 * s {
-            continue;
-        }
-        let c = 1.0 / s;
-        if best.as_ref().is_none_or(|b| fit.residual < b.fit.residual) {
-            best = Some(Explained::new(SCALE.id, fit).with("inertia_scale", c, ""));
+    for (torque, whole) in without.iter().zip(&with) {
+        let gyroscopic: Vec<_> = whole.iter().zip(torque).map(|(w, t)| w - t).collect();
+        for base in [gyroscopic, d.nothing()] {
+            let fit = fit(
+                &d.steps.measured,
+                &base,
+                Some((torque, [1e-12, 1e12])),
+                &d.kept,
+            );
+            let s = fit.coefficient;
+            if s <= 0.0 || fit.error > 0.02 * s {
+                continue;
+            }
+            if best.as_ref().is_none_or(|b| fit.left < b.fit.left) {
+                best = Some(Explained::new(SCALE.id, fit).with("inertia_scale", 1.0 / s, ""));
+            }
         }
     }
     let mut found = best?;

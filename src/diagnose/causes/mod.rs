@@ -92,6 +92,8 @@ pub const CAUSES: &[&Cause] = &[
     &double_cover::DOUBLE_COVER,
 ];
 
+pub(super) use double_cover::long_way;
+
 /// By its id.
 pub fn cause(id: &str) -> Option<&'static Cause> {
     CAUSES.iter().find(|c| c.id == id).copied()
