@@ -286,7 +286,14 @@ impl Steps {
 
     /// Eight rows of clean data; of noisy ones 30, or as many as two radians take, so that little noise is left.
     fn window(m: &Motion, noisy: bool) -> usize {
-        let usable = m.usable.iter().filter(|u| **u).count();
+        // Of the longest stretch without a hole, where there are several.
+        let (mut all, mut longest, mut run) = (0, 0, 0);
+        for step in &m.usable {
+            run = if *step { run + 1 } else { 0 };
+            longest = longest.max(run);
+            all += usize::from(*step);
+        }
+        let usable = all.min(4 * longest);
         if !noisy {
             return 8.min(usable / 4).max(4);
         }

@@ -537,7 +537,7 @@ fn faulty(cause: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
         run.gyroscopic = false;
         run.stepping = Stepping::SemiImplicit(1);
     } else if cause.starts_with("products") || cause.starts_with("gyroscopic") || besides {
-        if i % 8 == 5 {
+        if i % 8 == 5 && cause != "force-lifetime" {
             run.stepping = Stepping::SemiImplicit(2);
         }
     }

@@ -32,6 +32,7 @@ fn judge(d: &Dynamics) -> Option<Explained> {
     let near = if noisy { 3.0 * m.sigma } else { 1e-6 * top };
     let at_top: Vec<bool> = speeds.iter().map(|s| (s - top).abs() <= near).collect();
     let rows = longest(&at_top);
+    let (whole_noise, others) = (d.noise(), d.steps.windows.len());
     // Windows that fit into the plateau.
     let shorter;
     let d = if noisy && d.steps.length > rows / 3 {
@@ -42,14 +43,16 @@ fn judge(d: &Dynamics) -> Option<Explained> {
     };
     let predicted = d.predict(Law::RIGHT, false)?;
     let n = d.steps.windows.len();
-    let mut on = vec![false; n];
-    let mut off = vec![false; n];
+    // Long runs at the top are plateaus; single rows there are chance.
+    let plateau = runs(&at_top, if noisy { (rows / 4).max(8) } else { 3 });
+    let (mut on, mut off) = (vec![false; n], vec![false; n]);
     for w in 0..n {
         let (from, until) = d.steps.rows(w);
-        let share =
-            at_top[from..=until].iter().filter(|a| **a).count() as f64 / (until - from + 1) as f64;
-        on[w] = d.kept[w] && share > if noisy { 0.8 } else { 0.99 };
-        off[w] = d.kept[w] && share < if noisy { 0.2 } else { 0.01 };
+        let inside = plateau[from..=until].iter().filter(|a| **a).count();
+        // Steps that lead onto it are half clamped.
+        let near = plateau[from.saturating_sub(3)..(until + 4).min(plateau.len())].contains(&true);
+        on[w] = d.kept[w] && inside == until - from + 1;
+        off[w] = d.kept[w] && !near;
     }
     // The law must hold off the plateau, as far as there is such a time, and be broken on it, against ω.
     let (ons, offs) = (
@@ -59,13 +62,18 @@ fn judge(d: &Dynamics) -> Option<Explained> {
     if ons < 2 {
         return None;
     }
-    let free = fit(&d.steps.measured, &predicted, None, &off);
-    if offs >= 3 && free.left > d.bound(&free) {
-        return None;
-    }
     if offs < 3 {
         return None;
     }
+    // Where it is clamped for a row or two now and then, the law does not hold either.
+    let each = fit(&d.steps.measured, &predicted, None, &off);
+    let holds: Vec<bool> = (0..n)
+        .map(|w| off[w] && each.each[w].sqrt() <= 2.0 * d.bound(&each))
+        .collect();
+    if 3 * holds.iter().filter(|h| **h).count() < 2 * offs {
+        return None;
+    }
+    let free = fit(&d.steps.measured, &predicted, None, &holds);
     let omega = d.steps.of_omega(|w| *w);
     let (mut against, mut whole, mut broken) = (0.0, 0.0, 0);
     let scale = rms(&d.steps.measured, &d.kept);
@@ -77,9 +85,17 @@ fn judge(d: &Dynamics) -> Option<Explained> {
             broken += 1;
         }
     }
-    let left = free;
+    if broken < 2 || whole.is_nan() || against < if noisy { 0.8 } else { 0.95 } * whole {
+        return None;
+    }
+    // As if its windows were as long as those of the others, which keep less noise.
+    let mut free = free;
+    if d.noise() > 0.0 {
+        free.left *= whole_noise / d.noise();
+    }
+    free.each = vec![free.left * free.left; others];
     Some(
-        Explained::new(CLAMP.id, left)
+        Explained::new(CLAMP.id, free)
             .with("speed", top, "rad/s")
             .with("rows", rows as f64, "")
             .with("against_omega", against / whole, ""),
@@ -93,4 +109,19 @@ fn longest(of: &[bool]) -> usize {
         longest = longest.max(run);
     }
     longest
+}
+
+/// Those of the rows that lie in runs of at least so many.
+fn runs(of: &[bool], least: usize) -> Vec<bool> {
+    let mut found = vec![false; of.len()];
+    let mut from = 0;
+    for until in 0..=of.len() {
+        if until == of.len() || !of[until] {
+            if until - from >= least {
+                found[from..until].fill(true);
+            }
+            from = until + 1;
+        }
+    }
+    found
 }
