@@ -278,12 +278,14 @@ impl<'a> Dynamics<'a> {
 
     /// Up to which error a law holds.
     pub fn bound(&self, fit: &Fit) -> f64 {
-        let turn = self.motion.turn;
+        let (turn, speed) = (self.motion.turn, self.motion.speed);
+        // Where a law says that nothing changes, rounding is all there is.
+        let rounding = 1e-7 * speed * speed;
         if self.steps.noisy {
             1.6 * self.noise() + 0.01 * fit.scale
         } else {
             // A right engine leaves 0.001; half way is second order in the turn of a step.
-            (0.003 + 0.1 * turn * turn) * fit.scale + 1.6 * self.noise()
+            (0.003 + 0.1 * turn * turn) * fit.scale + 1.6 * self.noise() + rounding
         }
     }
 
