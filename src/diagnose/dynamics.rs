@@ -598,6 +598,15 @@ fn held(d: &Dynamics, right: &Right, untested: &mut Vec<String>) -> Outcome {
             "give the body unequal moments, tilt it, and spin it off its axes, by some radians per second".to_owned(),
         );
     }
+    if d.motion.turn > 0.5 && (right.stage.0.abs() > 0.1 || right.fit.residual > 0.03) {
+        return Outcome::CannotTell(
+            format!(
+                "the body turns by {:.2} rad from row to row, and what is left of Euler's equation may be its step's",
+                d.motion.turn
+            ),
+            "take, and log, smaller steps: below 0.3 rad a row".to_owned(),
+        );
+    }
     if !seen.torque {
         untested.push("what torques do (frames, rotation of the inertia, its size): none was logged that can be seen".to_owned());
     }

@@ -14,6 +14,7 @@
 use super::motion::{Motion, hann};
 use super::squares::Squares;
 use nalgebra::{Matrix3, Vector1, Vector3};
+use std::f64::consts::PI;
 
 /// Which tensor stands for I in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -277,7 +278,12 @@ impl Steps {
             length,
             weights: hann(length),
             measured: Vec::new(),
-            noise: m.sigma / m.h * (2.0 * std::f64::consts::PI.powi(2) / (w * w * w)).sqrt(),
+            noise: if m.derived {
+                // ω is a difference of attitudes, dω/h a second one.
+                m.sigma_q / (m.h * m.h) * (8.0 * PI.powi(4) / w.powi(5)).sqrt()
+            } else {
+                m.sigma / m.h * (2.0 * PI.powi(2) / w.powi(3)).sqrt()
+            },
             noisy,
         };
         s.measured = s.smooth(|step| (step.omega_b[1] - step.omega_b[0]) / step.h);

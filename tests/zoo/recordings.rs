@@ -190,7 +190,7 @@ fn solid(draw: &mut Draw) -> (f64, V, V) {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Loads {
+pub enum Loads {
     None,
     Torque,
     Force,
