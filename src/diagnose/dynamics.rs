@@ -30,6 +30,8 @@ pub struct Explained {
     pub causes: Vec<&'static str>,
     pub fit: Fit,
     pub evidence: Vec<Evidence>,
+    /// In how many ways the engine would be wrong.
+    pub faults: usize,
 }
 
 impl Explained {
@@ -38,7 +40,13 @@ impl Explained {
             causes: vec![cause],
             fit,
             evidence: Vec::new(),
+            faults: 1,
         }
+    }
+
+    /// Besides, the gyroscopic term is left out.
+    pub fn faults(self, faults: usize) -> Self {
+        Self { faults, ..self }
     }
 
     pub fn with(mut self, name: &'static str, value: f64, unit: &'static str) -> Self {
@@ -339,12 +347,10 @@ impl<'a> Dynamics<'a> {
         let mut all = Vec::new();
         for cause in CAUSES {
             match cause.judge {
-                Judge::Laws(laws) => {
-                    let best = (laws.iter().filter_map(|law| self.fit(*law)))
-                        .filter(|f| f.left.is_finite())
-                        .min_by(|a, b| a.left.total_cmp(&b.left));
-                    all.extend(best.map(|fit| Explained::new(cause.id, fit)));
-                }
+                Judge::Laws(laws) => all.extend(laws.iter().filter_map(|law| {
+                    let fit = self.fit(*law).filter(|f| f.left.is_finite())?;
+                    Some(Explained::new(cause.id, fit).faults(law.faults()))
+                })),
                 Judge::Fitted(judge) => all.extend(judge(self).filter(|e| e.fit.left.is_finite())),
                 _ => {}
             }
@@ -479,26 +485,30 @@ fn far_behind(d: &Dynamics, worse: &Fit, better: &Fit) -> bool {
 }
 
 fn found(d: &Dynamics, right: &Right, others: &[Explained], times: f64) -> Found {
-    let best = &others[0];
-    let mut causes = best.causes.clone();
-    // As good as the best, as far as these data tell.
-    let floor = 1e-5 * best.fit.scale;
-    let alike = |e: &Explained| {
-        let ratio = (e.fit.left + floor) / (best.fit.left + floor);
+    // As good as the best, as far as these data tell: then the plainest is meant.
+    let floor = 1e-5 * others[0].fit.scale;
+    let least = others[0].fit.left;
+    let alike = |e: &&Explained| {
+        let ratio = (e.fit.left + floor) / (least + floor);
         ratio < if d.steps.noisy { 1.1 } else { 1.5 }
     };
-    let mut second = None;
-    for other in &others[1..] {
-        if alike(other) {
-            for cause in &other.causes {
-                if !causes.contains(cause) {
-                    causes.push(cause);
-                }
-            }
-        } else if second.is_none() {
-            second = Some(other);
+    let faults = others
+        .iter()
+        .filter(alike)
+        .map(|e| e.faults)
+        .min()
+        .unwrap_or(1);
+    let mut plain = others.iter().filter(alike).filter(|e| e.faults == faults);
+    let best = plain.next().unwrap_or(&others[0]);
+    let mut causes = best.causes.clone();
+    for cause in plain.flat_map(|e| &e.causes) {
+        if !causes.contains(cause) {
+            causes.push(cause);
         }
     }
+    let second = others
+        .iter()
+        .find(|e| !alike(e) && !causes.contains(&e.causes[0]));
     let (name, left) = match second {
         Some(s) if s.fit.left < right.fit.left => (s.causes[0], s.fit.left),
         _ => ("as-declared", right.fit.left),

@@ -126,6 +126,17 @@ impl Law {
         Self { life, ..self }
     }
 
+    /// In how many ways it is not the right one.
+    pub fn faults(&self) -> usize {
+        let right = Self::RIGHT;
+        usize::from(self.map != right.map)
+            + usize::from(self.torque != right.torque)
+            + usize::from(self.gyroscopic != right.gyroscopic)
+            + usize::from(self.inertia != right.inertia)
+            + usize::from(self.lever != right.lever)
+            + usize::from(self.life != right.life)
+    }
+
     pub fn tensor(&self, declared: &Matrix3<f64>) -> Matrix3<f64> {
         let off = |s: f64| Matrix3::from_fn(|i, j| declared[(i, j)] * if i == j { 1.0 } else { s });
         match self.inertia {

@@ -42,6 +42,7 @@ fn judge(d: &Dynamics) -> Option<Explained> {
                     let (k, error) = (fit.coefficient, fit.error);
                     best = Some(
                         Explained::new(DAMPING.id, fit)
+                            .faults(1 + law.faults())
                             .with(name, k, unit)
                             .with("error", error, unit),
                     );

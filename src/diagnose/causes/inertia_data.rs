@@ -69,7 +69,7 @@ fn scale(d: &Dynamics) -> Option<Explained> {
     let mut best: Option<Explained> = None;
     for (torque, whole) in without.iter().zip(&with) {
         let gyroscopic: Vec<_> = whole.iter().zip(torque).map(|(w, t)| w - t).collect();
-        for base in [gyroscopic, d.nothing()] {
+        for (base, faults) in [(gyroscopic, 1), (d.nothing(), 2)] {
             let fit = fit(
                 &d.steps.measured,
                 &base,
@@ -81,7 +81,11 @@ fn scale(d: &Dynamics) -> Option<Explained> {
                 continue;
             }
             if best.as_ref().is_none_or(|b| fit.left < b.fit.left) {
-                best = Some(Explained::new(SCALE.id, fit).with("inertia_scale", 1.0 / s, ""));
+                best = Some(Explained::new(SCALE.id, fit).faults(faults).with(
+                    "inertia_scale",
+                    1.0 / s,
+                    "",
+                ));
             }
         }
     }
