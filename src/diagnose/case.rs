@@ -126,6 +126,15 @@ impl<'a> Case<'a> {
             .collect()
     }
 
+    /// Positions say that the body turns about another point than its declared centre of mass: how far that is from it, m.
+    pub fn turns_elsewhere(&self) -> Option<f64> {
+        let c = self.logged.declared.as_ref()?.centre_of_mass_b;
+        let centre = self.centre()?;
+        // The radius of gyration.
+        let size = (0.5 * self.inertia()?.trace() / self.mass()?).sqrt();
+        centre.is_not(&c, size).then(|| (centre.r - c).norm())
+    }
+
     pub fn centre(&self) -> Option<&Centre> {
         self.centre
             .get_or_init(|| {

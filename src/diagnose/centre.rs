@@ -24,6 +24,15 @@ pub struct Centre {
     pub left: f64,
 }
 
+impl Centre {
+    /// The body turns about another point than this one (body frame, from the logged position), by a fair part of its size: a joint, or
+    /// another centre of mass.
+    pub fn is_not(&self, c: &Vector3<f64>, size: f64) -> bool {
+        let off = (self.r - c).norm();
+        self.left < 0.1 * size && off > 0.1 * size && off > 10.0 * self.error
+    }
+}
+
 /// None where positions are missing, too few, or where nothing turns.
 ///
 /// `force` is over the mass, m/s²; empty where none was logged.

@@ -292,8 +292,10 @@ impl<'a> Dynamics<'a> {
         if self.steps.noisy {
             1.6 * self.noise() + 0.01 * fit.scale
         } else {
+            // Derived rates are those of half a step later or earlier, by the method.
+            let derived = if self.motion.derived { 0.02 } else { 0.0 };
             // A right engine leaves 0.001; half way is second order in the turn of a step.
-            (0.003 + 0.1 * turn * turn) * fit.scale + 1.6 * self.noise() + rounding
+            (0.003 + derived + 0.1 * turn * turn) * fit.scale + 1.6 * self.noise() + rounding
         }
     }
 
@@ -407,6 +409,16 @@ pub fn judge(case: &Case, m: &Motion) -> Judged {
         }
     }
     let left = d.right().map_or(0.0, |r| r.fit.left);
+    if let Some(far) = case.turns_elsewhere() {
+        judged.outcome = Outcome::CannotTell(
+            format!(
+                "the body turns about a point {far:.3e} m from its declared centre of mass (a joint, or another centre of mass), and \
+                 Euler's equation about the declared one leaves {left:.3e} rad/s² (rms)"
+            ),
+            "declare where the centre of mass is, log the joint's force and torque, or record a free flight".to_owned(),
+        );
+        return judged;
+    }
     judged.outcome = Outcome::CannotTell(
         format!(
             "Euler's equation leaves {left:.3e} rad/s² (rms) with what was logged, and no cause that is known explains it: most \

@@ -40,6 +40,8 @@ struct Pen {
     single: bool,
     /// Some rows are missing, some hold what is no number.
     holes: bool,
+    /// The body turns about a joint: its centre of mass is at this place from it.
+    joint: Option<V>,
     /// ω is another body's.
     stranger: bool,
 }
@@ -57,7 +59,8 @@ fn written(run: &Run, pen: Pen, name: &str, draw: &mut Draw) -> Logged {
             continue;
         }
         let r = matrix(row.q);
-        let mut x = sub(row.x, apply(&r, run.body.centre));
+        let centre = pen.joint.map_or(row.x, |d| apply(&r, d));
+        let mut x = sub(centre, apply(&r, run.body.centre));
         let (mut q, mut omega) = (row.q, row.omega);
         match run.fault {
             Fault::OmegaInBody => omega = apply(&transposed(&r), omega),
@@ -541,6 +544,9 @@ fn faulty(cause: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
             run.stepping = Stepping::SemiImplicit(2);
         }
     }
+    if i == 6 && (besides || cause.starts_with("gyroscopic") || cause.starts_with("products")) {
+        pen.no_omega = true;
+    }
     match run.fault {
         Fault::LeverStale | Fault::LeverFromOrigin => {
             // Levers of metres: forces that do not throw the body about.
@@ -728,6 +734,7 @@ pub const BLIND: &[&str] = &[
     "a torque that nobody wrote down",
     "a cube under a torque about the axis of its spin",
     "the omega of another body",
+    "on a joint",
 ];
 
 fn hidden(blind: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
@@ -756,6 +763,12 @@ fn hidden(blind: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
             run.rows = 200;
         }
         "no bodies file" => pen.no_bodies = true,
+        "on a joint" => {
+            let gyration = (run.body.inertia[0][0] / run.body.mass).sqrt();
+            let d = scaled(draw.direction(), 1.2 * gyration);
+            run.fault = Fault::InertiaAbout(d);
+            pen.joint = Some(d);
+        }
         "the omega of another body" => pen.stranger = true,
         "no attitudes" => pen.no_attitude = true,
         "a torque that nobody wrote down" => {

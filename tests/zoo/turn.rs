@@ -6,8 +6,6 @@ pub type V = [f64; 3];
 pub type M = [[f64; 3]; 3];
 pub type Q = [f64; 4];
 
-pub const ONE: M = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-
 pub fn add(a: V, b: V) -> V {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }

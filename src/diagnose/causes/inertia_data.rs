@@ -119,6 +119,10 @@ fn scale(d: &Dynamics) -> Option<Explained> {
 }
 
 fn wrong_point(d: &Dynamics) -> Option<Explained> {
+    // About a joint it is the inertia about the joint that is right.
+    if d.case.turns_elsewhere().is_some() {
+        return None;
+    }
     let found = effective(&d.steps, &d.tau_b(), &d.inertia, &d.kept)?;
     let (md2, off, j) = about_another_point(&found, &d.inertia)?;
     // J is good to 0.0002 of the trace in clean data, 0.003 in noisy ones (ten times that for what is derived from it).
@@ -126,7 +130,9 @@ fn wrong_point(d: &Dynamics) -> Option<Explained> {
         return None;
     }
     let fit = d.fit(Law::RIGHT.inertia(Inertia::Given(j)))?;
+    // Six numbers were fitted: a law that fits as well without any is plainer.
     let mut found = Explained::new(WRONG_POINT.id, fit)
+        .faults(2)
         .with("m_d2", md2, "kg m²")
         .with("off_parallel_axis", off, "");
     if let Some(mass) = d.mass {
