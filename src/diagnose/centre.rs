@@ -101,13 +101,13 @@ fn push(m: &Motion, force: &[Vector3<f64>]) -> Option<Vec<Vector3<f64>>> {
     }
     let (mut v, mut x) = (Vector3::zeros(), Vector3::zeros());
     let mut all = Vec::with_capacity(m.len());
-    for k in 0..m.len() {
+    for (k, f) in force.iter().enumerate() {
         all.push(x);
         if k + 1 < m.len() {
             let h = m.step(k);
             // Half way between x += h v before and after: engines differ.
-            x += (v + force[k] * (0.5 * h)) * h;
-            v += force[k] * h;
+            x += (v + f * (0.5 * h)) * h;
+            v += f * h;
         }
     }
     all.iter()

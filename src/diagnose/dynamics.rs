@@ -497,30 +497,27 @@ fn far_behind(d: &Dynamics, worse: &Fit, better: &Fit) -> bool {
 }
 
 fn found(d: &Dynamics, right: &Right, others: &[Explained], times: f64) -> Found {
-    // As good as the best, as far as these data tell: then the plainest is meant.
+    // A plainer explanation may leave a little more: what has numbers of its own to fit takes up a method's error besides.
     let floor = 1e-5 * others[0].fit.scale;
-    let least = others[0].fit.left;
-    let alike = |e: &&Explained| {
-        let ratio = (e.fit.left + floor) / (least + floor);
-        ratio < if d.steps.noisy { 1.1 } else { 1.5 }
+    let plain = |e: &&Explained| {
+        e.fit.left + floor < 3.0 * (others[0].fit.left + floor)
+            && e.fit.left <= 2.0 * d.bound(&e.fit)
     };
-    let faults = others
-        .iter()
-        .filter(alike)
-        .map(|e| e.faults)
-        .min()
-        .unwrap_or(1);
-    let mut plain = others.iter().filter(alike).filter(|e| e.faults == faults);
-    let best = plain.next().unwrap_or(&others[0]);
+    let faults = (others.iter().filter(plain).map(|e| e.faults).min()).unwrap_or(others[0].faults);
+    let best = (others.iter().find(|e| e.faults == faults)).unwrap_or(&others[0]);
+    // As good as that one, as far as these data tell.
+    let alike = |e: &&Explained| {
+        let ratio = (e.fit.left + floor) / (best.fit.left + floor);
+        e.faults == faults && ratio < if d.steps.noisy { 1.1 } else { 1.5 }
+    };
     let mut causes = best.causes.clone();
-    for cause in plain.flat_map(|e| &e.causes) {
+    for cause in others.iter().filter(alike).flat_map(|e| &e.causes) {
         if !causes.contains(cause) {
             causes.push(cause);
         }
     }
-    let second = others
-        .iter()
-        .find(|e| !alike(e) && !causes.contains(&e.causes[0]));
+    let second =
+        (others.iter()).find(|e| !causes.contains(&e.causes[0]) && e.fit.left > best.fit.left);
     let (name, left) = match second {
         Some(s) if s.fit.left < right.fit.left => (s.causes[0], s.fit.left),
         _ => ("as-declared", right.fit.left),

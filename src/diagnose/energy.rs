@@ -42,7 +42,7 @@ pub fn drift(m: &Motion, inertia: &Matrix3<f64>, tau_w: &[Vector3<f64>]) -> Opti
     let mut squares = Squares::<2>::new();
     let mut means: Vec<f64> = Vec::with_capacity(blocks + 1);
     let span = m.times[steps] - m.times[0];
-    for k in 0..steps {
+    for (k, tau_w) in tau_w.iter().enumerate().take(steps) {
         let (a, b) = (&m.omega_b[k], &m.omega_b[k + 1]);
         let e = energy(a);
         sum += e - work;
@@ -56,7 +56,7 @@ pub fn drift(m: &Motion, inertia: &Matrix3<f64>, tau_w: &[Vector3<f64>]) -> Opti
             (sum, time, inside) = (0.0, 0.0, 0);
         }
         let h = m.step(k);
-        let tau = super::kinematics::half_way(m, k).inverse_transform_vector(&tau_w[k]);
+        let tau = super::kinematics::half_way(m, k).inverse_transform_vector(tau_w);
         let mid = (a + b) * 0.5;
         let done = h * tau.dot(&mid);
         work += done;

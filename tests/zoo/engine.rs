@@ -101,12 +101,10 @@ impl Waves {
         if t < self.span.0 || t >= self.span.1 || off {
             return [0.0; 3];
         }
-        let mut v = [0.0; 3];
-        for i in 0..3 {
-            v[i] = self.amplitude[i]
-                * libm::sin(std::f64::consts::TAU * self.frequency[i] * t + self.phase[i]);
-        }
-        v
+        std::array::from_fn(|i| {
+            self.amplitude[i]
+                * libm::sin(std::f64::consts::TAU * self.frequency[i] * t + self.phase[i])
+        })
     }
 }
 

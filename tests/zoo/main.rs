@@ -14,7 +14,7 @@ use std::fmt::Write;
 use torquescope::diagnose::{Answer, CAUSES, Verdict, diagnose};
 
 const TUNED: [u64; 2] = [1, 2];
-const UNSEEN: [u64; 2] = [9_001, 9_002];
+const UNSEEN: [u64; 2] = [20_001, 20_002];
 /// Recordings of each cause and seed.
 const EACH: usize = 8;
 

@@ -539,10 +539,11 @@ fn faulty(cause: &str, i: usize, draw: &mut Draw) -> (Run, Pen) {
     if besides && i % 4 == 2 {
         run.gyroscopic = false;
         run.stepping = Stepping::SemiImplicit(1);
-    } else if cause.starts_with("products") || cause.starts_with("gyroscopic") || besides {
-        if i % 8 == 5 && cause != "force-lifetime" {
-            run.stepping = Stepping::SemiImplicit(2);
-        }
+    } else if (cause.starts_with("products") || cause.starts_with("gyroscopic") || besides)
+        && i % 8 == 5
+        && cause != "force-lifetime"
+    {
+        run.stepping = Stepping::SemiImplicit(2);
     }
     if i == 6 && (besides || cause.starts_with("gyroscopic") || cause.starts_with("products")) {
         pen.no_omega = true;
