@@ -400,6 +400,16 @@ pub fn judge(case: &Case, m: &Motion) -> Judged {
         let n = kept.iter().filter(|k| **k).count();
         if n < whole && n >= 5 && 10 * n >= 4 * whole {
             d.kept = kept;
+            if braked_at_the_top(&d) {
+                judged.left_out = left_out(&d);
+                judged.outcome = Outcome::CannotTell(
+                    "Euler's equation holds but where |ω| is largest; there something brakes the body: a limit of the speed \
+                     (speed-clamp), or a brake that was not logged"
+                        .to_owned(),
+                    "log every torque, and drive the body up for longer: a limit shows as a plateau of |ω|".to_owned(),
+                );
+                return judged;
+            }
             let right_holds = d.right().is_some_and(|r| r.fit.left <= d.bound(&r.fit));
             if right_holds && let Some(outcome) = round(&d, &mut judged.untested) {
                 judged.left_out = left_out(&d);
@@ -442,6 +452,24 @@ fn explained(d: &Dynamics) -> Option<Vec<bool>> {
         (0.01 + 0.2 * d.motion.turn) * scale + 2.5 * d.noise()
     };
     Some(plain.each.iter().map(|e| e.sqrt() <= limit).collect())
+}
+
+/// Whether most windows that are left out lie where the body is fastest, with the error against ω.
+fn braked_at_the_top(d: &Dynamics) -> bool {
+    let Some(right) = d.predict(Law::RIGHT, false) else {
+        return false;
+    };
+    let omega = d.steps.of_omega(|w| *w);
+    let speed = d.steps.of_omega(|w| Vector3::new(w.norm(), 0.0, 0.0));
+    let top = speed.iter().map(|s| s.x).fold(0.0, f64::max);
+    let (mut out, mut braked) = (0, 0);
+    for w in (0..d.kept.len()).filter(|&w| !d.kept[w]) {
+        let left = d.steps.measured[w] - right[w];
+        let against = -left.dot(&omega[w]) > 0.8 * left.norm() * omega[w].norm();
+        out += 1;
+        braked += usize::from(against && speed[w].x > 0.94 * top);
+    }
+    3 * braked > 2 * out
 }
 
 fn left_out(d: &Dynamics) -> Vec<LeftOut> {

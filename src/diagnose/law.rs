@@ -240,7 +240,7 @@ pub struct Steps {
 }
 
 /// At most so many steps are looked at, in blocks spread evenly: enough for errors of a part in a thousand.
-const MOST: usize = 48_000;
+const MOST: usize = 24_000;
 
 impl Steps {
     /// None where there are not three windows.
