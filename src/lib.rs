@@ -15,6 +15,7 @@ pub mod body;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod cost;
+pub mod diagnose;
 pub mod effect;
 pub mod exact;
 pub mod integrator;

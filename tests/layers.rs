@@ -10,7 +10,7 @@ const LEVELS: [&[&str]; 9] = [
     &["effect", "exact"],
     &["integrator"],
     &["log", "scene", "trace"],
-    &["sim"],
+    &["diagnose", "sim"],
     &["cost"],
     &["record", "live", "session"],
 ];
