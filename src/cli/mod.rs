@@ -6,6 +6,7 @@
 mod check;
 mod compare;
 mod cost;
+mod diagnose;
 mod explain;
 mod inspect;
 mod lists;
@@ -50,6 +51,7 @@ enum Verb {
     Recover(recover::Arguments),
     Inspect(inspect::Arguments),
     Compare(compare::Arguments),
+    Diagnose(diagnose::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
     Scenes(scenes::Arguments),
@@ -75,6 +77,7 @@ pub fn main() -> ExitCode {
         Verb::Recover(arguments) => recover::run(&arguments),
         Verb::Inspect(arguments) => inspect::run(&arguments),
         Verb::Compare(arguments) => compare::run(&arguments),
+        Verb::Diagnose(arguments) => diagnose::run(&arguments),
         Verb::Check(arguments) => check::run(&arguments),
         Verb::New(arguments) => new::run(&arguments),
         Verb::Scenes(arguments) => scenes::run(&arguments),

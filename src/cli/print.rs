@@ -80,6 +80,19 @@ pub fn spinner(message: &'static str) -> ProgressBar {
     spinner
 }
 
+/// How much of a file has been read; without an end where that is not known. Silent where there is no terminal.
+pub fn bytes(length: Option<u64>) -> ProgressBar {
+    let bar = length.map_or_else(ProgressBar::no_length, ProgressBar::new);
+    let template = match length {
+        Some(_) => "{wide_bar} {bytes} of {total_bytes}, {eta} left",
+        None => "{spinner} {bytes} read",
+    };
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar
+}
+
 /// A path as one types it to a shell.
 pub fn argument(path: &std::path::Path) -> String {
     let text = path.display().to_string();

@@ -33,8 +33,6 @@ pub struct Heading {
     pub streams: StreamSet,
     /// The same in sets that are due together, each with how often that is, 1/s.
     pub bands: Vec<(f64, StreamSet)>,
-    /// How often the state is recorded, 1/s.
-    pub state_rate: f64,
     /// What accuracy costs on the scene, where that is what the recording is about.
     pub price: Option<Cost>,
     pub(super) scales: Scales,
@@ -70,7 +68,6 @@ impl Heading {
             bands: bands
                 .map(|(rate, streams)| (per_second(rate), streams))
                 .collect(),
-            state_rate: per_second(scene.record.state),
             price: None,
             scales: Scales::new(simulation.subjects(), &simulation.expected()),
         }

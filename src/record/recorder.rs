@@ -29,8 +29,9 @@ use std::path::{Path, PathBuf};
 /// Rows a chunk: what is due in a few simulated seconds, so that a chunk costs little beside its rows and a run that is
 /// cut short lacks little.
 const CHUNK: f64 = 4.0;
-const STATE_ROWS: Range<usize> = 1024..4096;
-const NUMBER_ROWS: Range<usize> = 256..4096;
+/// As many rows as LZ4 looks back over (64 KiB), in which one column's offsets are another's.
+const STATE_ROWS: usize = 1024;
+const NUMBER_ROWS: Range<usize> = 256..1024;
 /// Of pictures and pages, which take kilobytes a row: as many as make some thousand over all bodies. A chunk costs the
 /// same hundred microseconds whatever is in it, and a line of the file's footer.
 const PICTURE_ROWS: Range<usize> = 256..1024;
@@ -94,15 +95,18 @@ struct BodyRecorder {
 /// Places of a body that are so far apart that one sees it.
 #[derive(Clone)]
 struct Places {
-    /// m.
+    /// m, and s.
     apart: f64,
-    last: Option<Vector3<f64>>,
+    seldom: f64,
+    last: Option<(f64, Vector3<f64>)>,
     times: Times,
     values: Vec<f32>,
 }
 
 /// Of a body's radius: a pixel or two of a body that fills a good part of the view.
 const SEEN_APART: f64 = 0.01;
+/// Places in the time in which what hangs there has one row: the fastest of bodies are not worth more.
+const OFTEN: f64 = 4.0;
 
 impl Recorder {
     /// Creates the file and writes what does not change: blueprint first, then static things.
@@ -253,7 +257,7 @@ impl Trace {
             hashes: Vec::new(),
             bodies,
             swarms,
-            state_rows: share.min(rows(heading.state_rate, STATE_ROWS)),
+            state_rows: share.min(STATE_ROWS),
             impulses,
         })
     }
@@ -417,6 +421,7 @@ impl BodyRecorder {
             omegas: Vec::new(),
             places: Places {
                 apart: SEEN_APART * mesh::radius(subject),
+                seldom: 1.0 / (OFTEN * heading.rate),
                 last: None,
                 times: Times::default(),
                 values: Vec::new(),
@@ -512,11 +517,13 @@ impl BodyRecorder {
 impl Places {
     /// Keeps a place that is far enough from the last.
     fn pass(&mut self, at: Instant, position_w: Vector3<f64>) {
-        let near = |last: Vector3<f64>| (position_w - last).norm() <= self.apart;
-        if self.last.is_some_and(near) {
+        let seen = |(time, place_w): (f64, Vector3<f64>)| {
+            at.time - time < self.seldom || (position_w - place_w).norm() <= self.apart
+        };
+        if self.last.is_some_and(seen) {
             return;
         }
-        self.last = Some(position_w);
+        self.last = Some((at.time, position_w));
         self.times.push(at);
         self.values.extend(position_w.iter().map(|&x| x as f32));
     }
