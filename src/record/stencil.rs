@@ -300,8 +300,9 @@ impl Holds {
         match self {
             Self::Missing => {}
             Self::Ids => {
-                let ids = (0..count as u128).map(|k| rows.first + k);
-                into.extend(ids.flat_map(u128::to_be_bytes));
+                for k in 0..count as u128 {
+                    into.extend_from_slice(&(rows.first + k).to_be_bytes());
+                }
             }
             Self::Nanoseconds => into.extend_from_slice(bytes(rows.times.nanoseconds())),
             Self::Steps => into.extend_from_slice(bytes(rows.times.steps())),
