@@ -134,32 +134,44 @@ impl Frames {
     /// The message of rows that are not settled.
     pub fn packed(&mut self, store: &StoreId, rows: &Rows<'_>) -> Result<Vec<u8>, String> {
         let mut message = Vec::new();
-        self.stream.clear();
         let form = rows.form();
-        if self.stencils.write(&form, rows, &mut self.stream) {
-            self.packer
-                .encode(store, rows.chunk, &self.stream, &mut message)?;
-            return Ok(message);
+        if self.through(store, rows, &form, &mut message)?.is_none() {
+            let chunk = rows.chunk()?.to_arrow_msg().map_err(said)?;
+            self.stencils.learn(form, rows, &chunk.batch);
+            encode(&LogMsg::ArrowMsg(store.clone(), chunk), &mut message)?;
         }
-        let chunk = rows.chunk()?.to_arrow_msg().map_err(said)?;
-        let batch = chunk.batch.clone();
-        encode(&LogMsg::ArrowMsg(store.clone(), chunk), &mut message)?;
-        self.stencils.learn(form, rows, &batch);
         Ok(message)
+    }
+
+    /// Appends the message of rows by a stencil, where there is one; how many bytes it unpacks to.
+    fn through(
+        &mut self,
+        store: &StoreId,
+        rows: &Rows<'_>,
+        form: &Form,
+        into: &mut Vec<u8>,
+    ) -> Result<Option<u64>, String> {
+        self.stream.clear();
+        if !self.stencils.write(form, rows, &mut self.stream) {
+            return Ok(None);
+        }
+        self.packer.encode(store, rows.chunk, &self.stream, into)?;
+        Ok(Some(self.stream.len() as u64))
     }
 
     /// Rows through a stencil, where there were others like them.
     fn put_rows(&mut self, store: &StoreId, rows: &Rows<'_>, form: Form) -> Result<(), String> {
         let like = (rows.path, form.columns());
-        self.stream.clear();
-        if self.manifest(store).knows(like) && self.stencils.write(&form, rows, &mut self.stream) {
-            self.packer
-                .encode(store, rows.chunk, &self.stream, &mut self.scratch)?;
-            let unpacked = self.stream.len() as u64;
-            let place = self.put_placed(unpacked)?;
-            self.manifest(store)
-                .append_like(like, rows.chunk, rows.times, place);
-            return Ok(());
+        if let Some(exemplar) = self.manifest(store).find(like) {
+            let mut message = std::mem::take(&mut self.scratch);
+            let unpacked = self.through(store, rows, &form, &mut message)?;
+            self.scratch = message;
+            if let Some(unpacked) = unpacked {
+                let place = self.put_placed(unpacked)?;
+                let lines = self.manifest(store);
+                lines.append_like(exemplar, rows.chunk, rows.times, place);
+                return Ok(());
+            }
         }
         let batch = self.put_built(store, &rows.chunk()?, Some(like))?;
         self.stencils.learn(form, rows, &batch);

@@ -20,14 +20,17 @@ use std::sync::Arc;
 pub struct Manifest {
     /// With the lines that are taken apart.
     exemplars: RrdManifestBuilder,
-    count: u32,
+    count: Exemplar,
     /// By entity and columns: which line they have there.
-    known: HashMap<String, Vec<(Columns, u32)>>,
+    known: HashMap<String, Vec<(Columns, Exemplar)>>,
     lines: Vec<Line>,
 }
 
 /// Which columns a chunk has, as a hash: chunks of one entity that have the same are alike in the footer.
 pub type Columns = u64;
+
+/// A line that others are like, by number.
+pub type Exemplar = u32;
 
 /// Where in the file a chunk is, without the head of its message.
 #[derive(Clone, Copy)]
@@ -38,7 +41,7 @@ pub struct Place {
 }
 
 struct Line {
-    exemplar: u32,
+    exemplar: Exemplar,
     /// Of a chunk that only resembles it.
     own: Option<Own>,
 }
@@ -52,12 +55,8 @@ struct Own {
 }
 
 impl Manifest {
-    /// Whether a chunk with these columns of this entity was taken apart.
-    pub fn knows(&self, (path, columns): (&str, Columns)) -> bool {
-        self.find(path, columns).is_some()
-    }
-
-    fn find(&self, path: &str, columns: Columns) -> Option<u32> {
+    /// The line of the chunk that was taken apart with these columns of this entity, if one was.
+    pub fn find(&self, (path, columns): (&str, Columns)) -> Option<Exemplar> {
         let known = self.known.get(path)?.iter();
         let mut found = known.filter(|(other, _)| *other == columns);
         found.next().map(|(_, line)| *line)
@@ -82,15 +81,9 @@ impl Manifest {
         Ok(())
     }
 
-    /// A line of a chunk like one that was taken apart; none where there was none.
-    pub fn append_like(
-        &mut self,
-        (path, columns): (&str, Columns),
-        chunk: u128,
-        times: &Times,
-        place: Place,
-    ) {
-        let line = self.find(path, columns).map(|exemplar| Line {
+    /// A line of a chunk like one that was taken apart.
+    pub fn append_like(&mut self, exemplar: Exemplar, chunk: u128, times: &Times, place: Place) {
+        self.lines.push(Line {
             exemplar,
             own: Some(Own {
                 chunk,
@@ -100,7 +93,6 @@ impl Manifest {
                 step: range(times.steps()),
             }),
         });
-        self.lines.extend(line);
     }
 
     pub fn build(self, store: StoreId) -> Result<RawRrdManifest, String> {
