@@ -1,5 +1,6 @@
 //! Who decides by which method bodies get through an interval.
 
+use super::schedule::slack;
 use crate::body::StateBlock;
 use crate::integrator::{Interval, Method, Pieces, Stepper};
 use crate::scene::{Action, Body, OwnMethod, Scene, Stepping};
@@ -122,11 +123,9 @@ impl Stated {
 
 /// The methods that events change to, by when.
 fn later(scene: &Scene) -> Vec<(f64, Choice)> {
-    // The clock takes two times for one instant where they are no farther apart (`schedule`).
-    let slack = |t: f64| (4.0 * f64::EPSILON * t).max(1e-9 * scene.step);
     let changes = scene.events.iter().filter_map(|event| match event.action {
         Action::Method(OwnMethod { method, tolerance }) => Some((
-            event.at - slack(event.at),
+            event.at - slack(event.at, scene.step),
             Choice {
                 method,
                 pieces: 1,

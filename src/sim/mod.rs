@@ -39,6 +39,16 @@ use watch::{Made, Watch};
 /// A scene being stepped.
 pub struct Simulation<'s> {
     scene: &'s Scene,
+    parts: Parts,
+    /// How long a stretch may be.
+    pace: Pace,
+    /// Set by who wants the run to end.
+    stop: Option<&'s AtomicBool>,
+}
+
+/// A simulation without its scene; by default none.
+#[derive(Default)]
+struct Parts {
     subjects: Vec<Subject>,
     groups: Vec<Group>,
     /// Bodies that are in no swarm: the first. Of the others nothing is derived.
@@ -62,10 +72,6 @@ pub struct Simulation<'s> {
     timed: bool,
     /// Mean wall time of the last stretch's steps of a group, s.
     step_time: Option<f64>,
-    /// How long a stretch may be.
-    pace: Pace,
-    /// Set by who wants the run to end.
-    stop: Option<&'s AtomicBool>,
 }
 
 /// Steps of a block from which on a thread is worth its start (some 40 µs): about ten times that.
@@ -166,8 +172,7 @@ impl<'s> Simulation<'s> {
     fn in_groups(scene: &'s Scene, width: usize) -> Self {
         let groups = group::groups(scene, width);
         let homes = groups.iter().enumerate();
-        let mut simulation = Self {
-            scene,
+        let mut parts = Parts {
             subjects: scene.bodies.iter().map(group::subject).collect(),
             outside_swarms: scene.outside_swarms(),
             home: homes
@@ -185,37 +190,45 @@ impl<'s> Simulation<'s> {
             judged: streams(&["error", "drift", "numbers"]),
             timed: scene.record.streams.contains("step_time"),
             step_time: None,
-            pace: Pace::default(),
-            stop: None,
         };
         if scene.record.streams.contains("sources") {
-            let outside = simulation.outside_swarms;
-            sources::tell_apart(scene, &mut simulation.subjects[..outside], &[]);
+            let outside = parts.outside_swarms;
+            sources::tell_apart(scene, &mut parts.subjects[..outside], &[]);
         }
-        for group in &mut simulation.groups {
-            group.watch(&simulation.subjects[group.members.clone()]);
-            group.load(scene, &simulation.acting);
+        for group in &mut parts.groups {
+            group.watch(&parts.subjects[group.members.clone()]);
+            group.load(scene, &parts.acting);
         }
-        simulation
+        Self::of(scene, parts)
+    }
+
+    /// From where the parts are; how long a stretch may be is counted anew.
+    fn of(scene: &'s Scene, parts: Parts) -> Self {
+        Self {
+            scene,
+            parts,
+            pace: Pace::default(),
+            stop: None,
+        }
     }
 
     /// Steps on at most so many threads; as many as the machine has where nothing is said. The
     /// motion is the same, to the last bit, on any number.
     #[must_use]
     pub fn on_threads(mut self, threads: usize) -> Self {
-        self.threads = threads.max(1);
+        self.parts.threads = threads.max(1);
         self
     }
 
     /// The bodies, as the trace names them.
     pub fn subjects(&self) -> &[Subject] {
-        &self.subjects
+        &self.parts.subjects
     }
 
     /// The largest of each quantity to be expected, from every event on its body as it starts.
     pub fn expected(&self) -> Sizes {
         let mut sizes = Sizes::default();
-        for (subject, sample) in self.subjects.iter().zip(self.samples(0.0)) {
+        for (subject, sample) in self.parts.subjects.iter().zip(self.samples(0.0)) {
             sizes.count(subject, &sample, 0.0);
         }
         let mut entry = None;
@@ -242,13 +255,13 @@ impl<'s> Simulation<'s> {
                 None => sizes.count_impulse(click.force.abs()),
             },
             (Target::All, Action::Switch { effect, on }) => {
-                let mut acting = self.acting.clone();
+                let mut acting = self.parts.acting.clone();
                 acting.on[*effect] = *on;
-                for group in &self.groups {
+                for group in &self.parts.groups {
                     let mut group = group.clone();
                     group.load(self.scene, &acting);
                     for (body, sample) in group.members.clone().zip(group.samples(event.at)) {
-                        sizes.count(&self.subjects[body], &sample, 0.0);
+                        sizes.count(&self.parts.subjects[body], &sample, 0.0);
                     }
                 }
             }
@@ -257,7 +270,7 @@ impl<'s> Simulation<'s> {
     }
 
     fn expect_on(&self, body: usize, event: Event, sizes: &mut Sizes) {
-        let mut group = self.group_of(body).clone();
+        let mut group = self.parts.group_of(body).clone();
         let (at, lasts) = (event.at, event.action.lasts());
         if let Action::Set(change) = &event.action {
             group.set(body, change);
@@ -265,14 +278,14 @@ impl<'s> Simulation<'s> {
         if let Some(strike) = strike(&mut group, body, &event).and_then(|jump| jump.strike) {
             sizes.count_impulse(strike.force_w.norm());
         }
-        let mut acting = self.acting.clone();
+        let mut acting = self.parts.acting.clone();
         acting.events.push(Lasting {
             index: 0,
             body,
             event,
         });
         group.load(self.scene, &acting);
-        sizes.count(&self.subjects[body], &group.sample(body, at), lasts);
+        sizes.count(&self.parts.subjects[body], &group.sample(body, at), lasts);
     }
 
     /// Steps the scene from its start to its end by the method that it states. The outcome tells
@@ -295,10 +308,10 @@ impl<'s> Simulation<'s> {
         let done = self.play(&mut schedule, chooser, &mut outcome, sink);
         let now = schedule.now();
         outcome.steps = now.step;
-        let works = self.groups.iter().map(Group::work);
+        let works = self.parts.groups.iter().map(Group::work);
         outcome.work = works.fold(Work::default(), |a, b| a + b);
         outcome.end = self.samples(now.time);
-        let watches = self.watches.iter().map(RefCell::borrow);
+        let watches = self.parts.watches.iter().map(RefCell::borrow);
         outcome.warnings = watches
             .flat_map(|watch| watch.told().cloned().collect::<Vec<_>>())
             .collect();
@@ -328,11 +341,13 @@ impl<'s> Simulation<'s> {
         self.write_notes(&[], start, start.time, sink)?;
         let applied = self.apply(start, &script::at_start(self.scene), schedule);
         self.log(start, &applied, outcome, sink)?;
-        self.deliver_motions(start, sink)?;
-        let all: Vec<usize> = (0..self.subjects.len()).collect();
+        self.parts.deliver_motions(start, sink)?;
+        let all: Vec<usize> = (0..self.parts.subjects.len()).collect();
         self.must_be_finite(start, &all, sink)?;
         self.set_out(&all, schedule, chooser);
-        let samples = self.samples_outside_swarms(|group| group.samples(start.time));
+        let samples = self
+            .parts
+            .samples_outside_swarms(|group| group.samples(start.time));
         self.deliver(0, start, (samples, self.scene.record.streams), sink)?;
         self.deliver_fingerprint(start, sink)?;
         Ok(())
@@ -352,7 +367,7 @@ impl<'s> Simulation<'s> {
                 let Instant { time, step } = first;
                 return Err(SimError::Stopped { time, step });
             }
-            let most = self.pace.steps(&self.groups, self.scene.step);
+            let most = self.pace.steps(&self.parts.groups, self.scene.step);
             let Some(stretch) = schedule.next_stretch(most) else {
                 if schedule.is_over() {
                     self.write_notes(&[], first, f64::INFINITY, sink)?;
@@ -364,7 +379,7 @@ impl<'s> Simulation<'s> {
                 // Something happens where it stands.
                 true => None,
                 false => {
-                    self.pace.take(stretch.steps.len(), &self.groups);
+                    self.pace.take(stretch.steps.len(), &self.parts.groups);
                     self.stretch(&stretch, first, sink)?
                 }
             };
@@ -387,7 +402,7 @@ impl<'s> Simulation<'s> {
                     warn(now, news, sink)?;
                 }
                 if self.log(now, &applied, outcome, sink)? {
-                    self.deliver_motions(now, sink)?;
+                    self.parts.deliver_motions(now, sink)?;
                 }
                 self.deliver_bodies(now, &touched, sink)?;
                 self.must_be_finite(now, &touched, sink)?;
@@ -400,32 +415,32 @@ impl<'s> Simulation<'s> {
     /// Starts the method of the groups of these bodies, and what is known of their true motion:
     /// from now until an event touches them.
     fn set_out(&mut self, bodies: &[usize], schedule: &Schedule<'_>, chooser: &mut dyn Choose) {
-        let mut groups: Vec<usize> = bodies.iter().map(|&body| self.home[body]).collect();
+        let mut groups: Vec<usize> = bodies.iter().map(|&body| self.parts.home[body]).collect();
         groups.dedup();
         if !groups.is_empty() {
             self.pace.set_out();
         }
         let now = schedule.now().time;
         for group in groups {
-            let members = self.groups[group].members.clone();
-            let touches = |happening| self.acting.touches(self.scene, happening, &members);
+            let members = self.parts.groups[group].members.clone();
+            let touches = |happening| self.parts.acting.touches(self.scene, happening, &members);
             let until = schedule.until(touches);
-            self.groups[group].set_out(chooser, now, until);
+            self.parts.groups[group].set_out(chooser, now, until);
         }
         for &body in bodies
             .iter()
-            .take_while(|body| **body < self.outside_swarms)
+            .take_while(|body| **body < self.parts.outside_swarms)
         {
-            let truth = &self.truths[body];
-            let group = self.group_of(body);
+            let truth = &self.parts.truths[body];
+            let group = self.parts.group_of(body);
             let sample = group.sample(body, now);
-            let simulated = (&self.subjects[body], &sample, group, body);
+            let simulated = (&self.parts.subjects[body], &sample, group, body);
             let alone = body..body + 1;
-            let touches = |happening| self.acting.touches(self.scene, happening, &alone);
+            let touches = |happening| self.parts.acting.touches(self.scene, happening, &alone);
             let until = schedule.until(touches);
             truth
                 .borrow_mut()
-                .set_out((self.scene, &self.acting), (now, until), simulated);
+                .set_out((self.scene, &self.parts.acting), (now, until), simulated);
         }
     }
 
@@ -437,10 +452,10 @@ impl<'s> Simulation<'s> {
         first: Instant,
         sink: &mut dyn Sink,
     ) -> Result<Option<(Instant, usize)>, SimError> {
-        let start = self.timed.then(std::time::Instant::now);
+        let start = self.parts.timed.then(std::time::Instant::now);
         let lost = self.advance(&stretch.steps);
-        self.step_time = start.map(|start| {
-            let steps = stretch.steps.len() * self.groups.len();
+        self.parts.step_time = start.map(|start| {
+            let steps = stretch.steps.len() * self.parts.groups.len();
             start.elapsed().as_secs_f64() / steps.max(1) as f64
         });
         let Some((taken, body)) = lost else {
@@ -448,7 +463,7 @@ impl<'s> Simulation<'s> {
             return Ok(None);
         };
         let cut = stretch.cut(taken, first);
-        for group in &mut self.groups {
+        for group in &mut self.parts.groups {
             group.retake(&cut.steps);
         }
         self.deliver_stretch(&cut, sink)?;
@@ -459,18 +474,18 @@ impl<'s> Simulation<'s> {
     /// not act on each other, so it is all one in which order. The first loss of a state there is:
     /// the steps taken until then, and the body.
     fn advance(&mut self, steps: &[Step]) -> Option<(usize, usize)> {
-        let enough = self.groups.len() * steps.len() >= WORTH_A_THREAD;
-        let threads = if enough { self.threads } else { 1 };
-        let share = self.groups.len().div_ceil(threads).max(1);
+        let enough = self.parts.groups.len() * steps.len() >= WORTH_A_THREAD;
+        let threads = if enough { self.parts.threads } else { 1 };
+        let share = self.parts.groups.len().div_ceil(threads).max(1);
         let advance = |groups: &mut [Group]| {
             let losses = groups.iter_mut().filter_map(|group| group.advance(steps));
             losses.min()
         };
         if threads == 1 {
-            return advance(&mut self.groups);
+            return advance(&mut self.parts.groups);
         }
         std::thread::scope(|scope| {
-            let shares = self.groups.chunks_mut(share);
+            let shares = self.parts.groups.chunks_mut(share);
             let running: Vec<_> = shares.map(|share| scope.spawn(|| advance(share))).collect();
             let losses = running.into_iter().filter_map(|thread| {
                 let joined = thread.join();
@@ -488,19 +503,20 @@ impl<'s> Simulation<'s> {
         let (states, instants): (Vec<usize>, Vec<Instant>) =
             states.map(|(k, kept)| (k, kept.at)).unzip();
         let (states, instants) = (states.into(), instants.into());
-        for group in &self.groups {
+        for group in &self.parts.groups {
             sink.poses(group.poses_kept(&states, &instants))?;
         }
         for (k, kept) in stretch.kept.iter().enumerate() {
             if kept.display || !kept.due.is_empty() {
-                let (time, apart) = (kept.at.time, kept.due.meets(self.apart));
-                let samples =
-                    self.samples_outside_swarms(|group| group.samples_kept(k, time, apart));
+                let (time, apart) = (kept.at.time, kept.due.meets(self.parts.apart));
+                let samples = self
+                    .parts
+                    .samples_outside_swarms(|group| group.samples_kept(k, time, apart));
                 self.deliver_when(0, kept.at, (samples, kept.due), kept.display, sink)?;
             }
             if kept.display && sink.wants_fingerprints() {
                 let mix = |hash, group: &Group| group.hash_kept_into(k, hash);
-                sink.fingerprint(kept.at, self.groups.iter().fold(HASH_START, mix))?;
+                sink.fingerprint(kept.at, self.parts.groups.iter().fold(HASH_START, mix))?;
             }
         }
         Ok(())
@@ -514,7 +530,7 @@ impl<'s> Simulation<'s> {
         sink: &mut dyn Sink,
     ) -> Result<(), SimError> {
         let lost = |&body: &usize| {
-            let group = self.group_of(body);
+            let group = self.parts.group_of(body);
             let sample = group.sample(body, now.time);
             !(group.is_finite(body) && sample.alpha_w.iter().all(|x| x.is_finite()))
         };
@@ -527,10 +543,10 @@ impl<'s> Simulation<'s> {
     /// Records the broken instant in full and says what happened.
     fn not_finite(&self, at: Instant, body: usize, cause: String, sink: &mut dyn Sink) -> SimError {
         let error = SimError::NotFinite {
-            body: self.subjects[body].name.clone(),
+            body: self.parts.subjects[body].name.clone(),
             time: at.time,
             step: at.step,
-            by: match self.group_of(body).method {
+            by: match self.parts.group_of(body).method {
                 "" => String::new(),
                 method => format!(", by {method}"),
             },
@@ -542,7 +558,9 @@ impl<'s> Simulation<'s> {
             kind: NoteKind::Failure,
             strike: None,
         };
-        let mut samples = self.samples_outside_swarms(|group| group.samples(at.time));
+        let mut samples = self
+            .parts
+            .samples_outside_swarms(|group| group.samples(at.time));
         for sample in &mut samples {
             sample.due = self.scene.record.streams;
         }
@@ -561,7 +579,7 @@ impl<'s> Simulation<'s> {
         const FAR: f64 = 0.1;
         /// Radians a step of which a 64-bit number knows no part of a turn.
         const ABSURD: f64 = 1e16;
-        let group = self.group_of(body);
+        let group = self.parts.group_of(body);
         let turned = group.turn_in_a_step(body, self.scene.step);
         let absurd = turned.is_nan() || turned > ABSURD;
         if !absurd && group.steps == Some(Kind::Adaptive) {
@@ -591,7 +609,7 @@ impl<'s> Simulation<'s> {
         until: f64,
         sink: &mut dyn Sink,
     ) -> Result<(), SinkError> {
-        while let Some((time, note)) = self.notes.get(self.noted)
+        while let Some((time, note)) = self.parts.notes.get(self.parts.noted)
             && *time <= until
         {
             let taken = steps.partition_point(|step| step.to <= *time);
@@ -600,7 +618,7 @@ impl<'s> Simulation<'s> {
                 step: first.step + taken as u64,
             };
             sink.note(at, note)?;
-            self.noted += 1;
+            self.parts.noted += 1;
         }
         Ok(())
     }
@@ -626,7 +644,7 @@ impl<'s> Simulation<'s> {
             match (&event.target, happening, &event.action) {
                 (Target::Body(body), ..) => bodies.push(*body),
                 (Target::Hit(_), Happening::Ends(index), _) => {
-                    let acting = self.acting.events.iter();
+                    let acting = self.parts.acting.events.iter();
                     let hit = acting.filter(|acting| acting.index == *index);
                     bodies.extend(hit.map(|acting| acting.body));
                 }
@@ -635,17 +653,17 @@ impl<'s> Simulation<'s> {
                     bodies.extend(self.pick(range, click).map(|(body, _)| body));
                 }
                 (Target::Hit(range), ..) => bodies.extend(range.clone()),
-                (Target::All, ..) => bodies.extend(0..self.subjects.len()),
+                (Target::All, ..) => bodies.extend(0..self.parts.subjects.len()),
                 (Target::Log(_), ..) => {}
             }
         }
-        bodies.retain(|body| *body < self.outside_swarms);
+        bodies.retain(|body| *body < self.parts.outside_swarms);
         bodies.sort_unstable();
         bodies.dedup();
         let before = |body| {
-            let mut sample = self.group_of(body).sample(body, now.time);
+            let mut sample = self.parts.group_of(body).sample(body, now.time);
             sample.due = due;
-            sample.step_time = self.step_time;
+            sample.step_time = self.parts.step_time;
             let news = self.judge(body, &mut sample, now);
             Before { body, sample, news }
         };
@@ -677,16 +695,18 @@ impl<'s> Simulation<'s> {
             }));
         }
         let mut groups = self.touched(&all);
-        groups.iter_mut().for_each(|body| *body = self.home[*body]);
+        groups
+            .iter_mut()
+            .for_each(|body| *body = self.parts.home[*body]);
         groups.dedup();
         for group in groups {
-            self.groups[group].load(self.scene, &self.acting);
+            self.parts.groups[group].load(self.scene, &self.parts.acting);
         }
         all
     }
 
     fn end(&mut self, index: usize) -> Option<Done> {
-        let events = &mut self.acting.events;
+        let events = &mut self.parts.acting.events;
         let acting = events.iter().position(|acting| acting.index == index)?;
         Some(Done::Ended(events.remove(acting).body))
     }
@@ -695,19 +715,19 @@ impl<'s> Simulation<'s> {
         let event = &self.scene.events[index];
         match (&event.action, &event.target) {
             (Action::Switch { effect, on }, _) => {
-                self.acting.on[*effect] = *on;
+                self.parts.acting.on[*effect] = *on;
                 (None, Some(Done::Switched))
             }
             // What it is the chooser knows.
             (Action::Method(_), _) => (None, Some(Done::Changed)),
             (Action::Set(change), Target::Body(body)) => {
                 let body = *body;
-                let group = &mut self.groups[self.home[body]];
+                let group = &mut self.parts.groups[self.parts.home[body]];
                 group.set(body, change);
                 let held = self.scene.bodies[body].pivot_b.is_some();
-                match self.truths.get_mut(body).map(RefCell::get_mut) {
+                match self.parts.truths.get_mut(body).map(RefCell::get_mut) {
                     // What was lost is known again.
-                    Some(truth) if self.compared && change.says_all(held) => {
+                    Some(truth) if self.parts.compared && change.says_all(held) => {
                         truth.restart(group.alone(body), at);
                     }
                     Some(truth) => truth.set(body, change, at),
@@ -748,24 +768,24 @@ impl<'s> Simulation<'s> {
 
     /// Strikes a body, or begins to push it.
     fn act(&mut self, index: usize, body: usize, event: Event, at: f64) -> Done {
-        let group = &mut self.groups[self.home[body]];
+        let group = &mut self.parts.groups[self.parts.home[body]];
         if let Some(jump) = strike(group, body, &event) {
-            if let Some(truth) = self.truths.get_mut(body) {
+            if let Some(truth) = self.parts.truths.get_mut(body) {
                 strike_truth(truth.get_mut(), body, &event, at);
             }
             return Done::Struck(body, jump);
         }
         let lasting = Lasting { index, body, event };
-        self.acting.events.push(lasting.clone());
+        self.parts.acting.events.push(lasting.clone());
         Done::Begun(lasting)
     }
 
     /// The first of some bodies that a click's ray hits, as they are now.
     fn pick(&self, bodies: &Range<usize>, click: &Click) -> Option<(usize, Picked)> {
-        let motion = |body: usize| self.group_of(body).motion_of(body);
+        let motion = |body: usize| self.parts.group_of(body).motion_of(body);
         let posed = bodies
             .clone()
-            .map(|body| (&self.subjects[body], motion(body)));
+            .map(|body| (&self.parts.subjects[body], motion(body)));
         let (k, picked) = pick::first_hit(&click.ray_w, posed)?;
         Some((bodies.start + k, picked))
     }
@@ -787,7 +807,7 @@ impl<'s> Simulation<'s> {
         {
             let event = &self.scene.events[*index];
             let picked = picked.as_ref();
-            let named = |body: usize| (body, &self.subjects[body]);
+            let named = |body: usize| (body, &self.parts.subjects[body]);
             let mut blow = |body: usize, sample: Sample, own: script::Own, jump| {
                 outcome.blows.push(Blow {
                     at: now,
@@ -803,7 +823,7 @@ impl<'s> Simulation<'s> {
                 Done::Begun(Lasting {
                     body, event: acts, ..
                 }) => {
-                    let group = self.group_of(*body);
+                    let group = self.parts.group_of(*body);
                     let (own, sample) = (group.own(*body, acts), group.sample(*body, now.time));
                     let note = script::begin_note((event, picked), named(*body), (&own, &sample));
                     blow(*body, sample, own, None);
@@ -811,12 +831,12 @@ impl<'s> Simulation<'s> {
                 }
                 Done::Struck(body, jump) => {
                     jumped = true;
-                    let sample = self.group_of(*body).sample(*body, now.time);
+                    let sample = self.parts.group_of(*body).sample(*body, now.time);
                     blow(*body, sample, script::Own::default(), Some(*jump));
                     script::strike_note((event, picked), named(*body), *jump)
                 }
                 Done::Ended(body) => {
-                    let sample = self.group_of(*body).sample(*body, now.time);
+                    let sample = self.parts.group_of(*body).sample(*body, now.time);
                     script::end_note(event, named(*body), &sample)
                 }
                 Done::Set(body) => {
@@ -839,7 +859,7 @@ impl<'s> Simulation<'s> {
             match done {
                 Done::Begun(lasting) => bodies.push(lasting.body),
                 Done::Ended(body) | Done::Struck(body, _) | Done::Set(body) => bodies.push(*body),
-                Done::Switched | Done::Changed => bodies.extend(0..self.subjects.len()),
+                Done::Switched | Done::Changed => bodies.extend(0..self.parts.subjects.len()),
                 Done::Missed => {}
             }
         }
@@ -856,9 +876,9 @@ impl<'s> Simulation<'s> {
     ) -> Result<(), SinkError> {
         for &body in bodies
             .iter()
-            .take_while(|body| **body < self.outside_swarms)
+            .take_while(|body| **body < self.parts.outside_swarms)
         {
-            let sample = vec![self.group_of(body).sample(body, now.time)];
+            let sample = vec![self.parts.group_of(body).sample(body, now.time)];
             self.deliver(body, now, (sample, self.scene.record.streams), sink)?;
         }
         Ok(())
@@ -889,8 +909,8 @@ impl<'s> Simulation<'s> {
         for (body, sample) in (first..).zip(&mut samples) {
             sample.due = due;
             sample.shown = shown;
-            sample.step_time = self.step_time;
-            if shown || due.meets(self.judged) {
+            sample.step_time = self.parts.step_time;
+            if shown || due.meets(self.parts.judged) {
                 news.extend(self.judge(body, sample, at));
             }
         }
@@ -900,10 +920,10 @@ impl<'s> Simulation<'s> {
 
     /// Adds to a sample how far it is from the truth, where that is known and recorded; what is found to drift.
     fn judge(&self, body: usize, sample: &mut Sample, at: Instant) -> Vec<Warning> {
-        let subject = &self.subjects[body];
-        let mut truth = self.truths[body].borrow_mut();
+        let subject = &self.parts.subjects[body];
+        let mut truth = self.parts.truths[body].borrow_mut();
         let deviation = truth.deviation(subject, sample, at.time);
-        let news = self.group_of(body).choice.map(|choice| {
+        let news = self.parts.group_of(body).choice.map(|choice| {
             let made = Made {
                 at,
                 body,
@@ -912,15 +932,33 @@ impl<'s> Simulation<'s> {
                 step: self.scene.step,
                 free: truth.is_exact(),
             };
-            let mut watch = self.watches[body].borrow_mut();
+            let mut watch = self.parts.watches[body].borrow_mut();
             watch.look(&made, sample, &deviation)
         });
-        if self.compared {
+        if self.parts.compared {
             sample.deviation = deviation;
         }
         news.unwrap_or_default()
     }
 
+    fn samples(&self, t: f64) -> Vec<Sample> {
+        self.parts
+            .groups
+            .iter()
+            .flat_map(|group| group.samples(t))
+            .collect()
+    }
+
+    /// Delivers the hash of all states as they are now.
+    fn deliver_fingerprint(&self, now: Instant, sink: &mut dyn Sink) -> Result<(), SinkError> {
+        if !sink.wants_fingerprints() {
+            return Ok(());
+        }
+        sink.fingerprint(now, self.parts.fingerprint())
+    }
+}
+
+impl Parts {
     fn group_of(&self, body: usize) -> &Group {
         &self.groups[self.home[body]]
     }
@@ -934,20 +972,10 @@ impl<'s> Simulation<'s> {
         samples
     }
 
-    fn samples(&self, t: f64) -> Vec<Sample> {
-        self.groups
-            .iter()
-            .flat_map(|group| group.samples(t))
-            .collect()
-    }
-
-    /// Delivers the hash of all states as they are now.
-    fn deliver_fingerprint(&self, now: Instant, sink: &mut dyn Sink) -> Result<(), SinkError> {
-        if !sink.wants_fingerprints() {
-            return Ok(());
-        }
-        let mix = |hash, group: &Group| group.hash_into(hash);
-        sink.fingerprint(now, self.groups.iter().fold(HASH_START, mix))
+    /// A hash of all states.
+    fn fingerprint(&self) -> u64 {
+        let groups = self.groups.iter();
+        groups.fold(HASH_START, |hash, group| group.hash_into(hash))
     }
 
     /// Delivers the poses of all bodies at one instant.

@@ -5,17 +5,16 @@
 //! bit. So a few stored states suffice to go back anywhere.
 
 use super::group::Group;
-use super::pace::Pace;
-use super::schedule::{Parked, Position, Schedule};
+use super::schedule::{Parked, Position, Schedule, slack};
 use super::script::Acting;
 use super::sources;
 use super::truth::Truth;
 use super::watch::Watch;
-use super::{Blow, Choose, HASH_START, Outcome, SimError, Simulation, Warning};
+use super::{Blow, Choose, Outcome, Parts, SimError, Simulation};
 use crate::mass::ray::Ray;
 use crate::scene::Scene;
 use crate::scene::pick::{self, Picked};
-use crate::trace::{Instant, Motion, Note, Sample, Sink, SinkError, StreamSet, Subject, Track};
+use crate::trace::{Instant, Sample, Sink, SinkError, Subject};
 use nalgebra::Vector3;
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -87,96 +86,10 @@ impl Checkpoint {
     }
 }
 
-/// A simulation without its scene; by default none.
-#[derive(Default)]
-struct Parts {
-    subjects: Vec<Subject>,
-    groups: Vec<Group>,
-    outside_swarms: usize,
-    home: Vec<usize>,
-    acting: Acting,
-    notes: Vec<(f64, Note)>,
-    noted: usize,
-    threads: usize,
-    truths: Vec<RefCell<Truth>>,
-    watches: Vec<RefCell<Watch>>,
-    compared: bool,
-    apart: StreamSet,
-    judged: StreamSet,
-    timed: bool,
-    step_time: Option<f64>,
-}
-
-impl Parts {
-    fn of(simulation: Simulation<'_>) -> Self {
-        let Simulation {
-            scene: _,
-            subjects,
-            groups,
-            outside_swarms,
-            home,
-            acting,
-            notes,
-            noted,
-            threads,
-            truths,
-            watches,
-            compared,
-            apart,
-            judged,
-            timed,
-            step_time,
-            stop: _,
-            // Counted anew where it is taken up.
-            pace: _,
-        } = simulation;
-        Self {
-            subjects,
-            groups,
-            outside_swarms,
-            home,
-            acting,
-            notes,
-            noted,
-            threads,
-            truths,
-            watches,
-            compared,
-            apart,
-            judged,
-            timed,
-            step_time,
-        }
-    }
-
-    fn with(self, scene: &Scene) -> Simulation<'_> {
-        Simulation {
-            scene,
-            subjects: self.subjects,
-            groups: self.groups,
-            outside_swarms: self.outside_swarms,
-            home: self.home,
-            acting: self.acting,
-            notes: self.notes,
-            noted: self.noted,
-            threads: self.threads,
-            truths: self.truths,
-            watches: self.watches,
-            compared: self.compared,
-            apart: self.apart,
-            judged: self.judged,
-            timed: self.timed,
-            step_time: self.step_time,
-            stop: None,
-            pace: Pace::default(),
-        }
-    }
-}
-
 impl Run {
     /// A scene before its start: nothing has happened.
     pub fn new(scene: Arc<Scene>) -> Self {
-        let parts = Parts::of(Simulation::new(&scene));
+        let parts = Simulation::new(&scene).parts;
         let clock = Schedule::new(&scene).park();
         Self {
             scene,
@@ -273,7 +186,7 @@ impl Run {
         let clock = std::mem::take(&mut self.clock);
         let parts = std::mem::take(&mut self.parts);
         let mut schedule = Schedule::unpark(&scene, clock);
-        let mut simulation = parts.with(&scene);
+        let mut simulation = Simulation::of(&scene, parts);
         let mut outcome = Outcome::default();
         let opened = match self.opened {
             true => Ok(()),
@@ -283,10 +196,10 @@ impl Run {
         schedule.allow(limit.steps, limit.until);
         let done =
             opened.and_then(|()| simulation.go_on(&mut schedule, chooser, &mut outcome, sink));
-        for group in &mut simulation.groups {
+        for group in &mut simulation.parts.groups {
             group.forget();
         }
-        self.parts = Parts::of(simulation);
+        self.parts = simulation.parts;
         self.clock = schedule.park();
         self.blows.append(&mut outcome.blows);
         match done {
@@ -335,50 +248,48 @@ impl Run {
 
     /// A hash of every bit of all bodies' states, as recordings hold it.
     pub fn fingerprint(&self) -> u64 {
-        let groups = self.parts.groups.iter();
-        groups.fold(HASH_START, |hash, group| group.hash_into(hash))
-    }
-
-    fn group_of(&self, body: usize) -> &Group {
-        &self.parts.groups[self.parts.home[body]]
+        self.parts.fingerprint()
     }
 
     /// The bodies that are in no swarm as they are, with how far they are from the truth.
     pub fn samples(&self) -> Vec<Sample> {
-        (0..self.outside_swarms())
-            .filter_map(|body| self.sample(body))
-            .collect()
+        let now = self.now().time;
+        let mut samples = self
+            .parts
+            .samples_outside_swarms(|group| group.samples(now));
+        for (body, sample) in samples.iter_mut().enumerate() {
+            self.judge(body, sample, now);
+        }
+        samples
     }
 
     /// One of all bodies as it is; `None` of what is none. How far one of a swarm is from the truth is not known.
     pub fn sample(&self, body: usize) -> Option<Sample> {
-        let subject = self.parts.subjects.get(body)?;
-        let now = self.now();
-        let mut sample = self.group_of(body).sample(body, now.time);
-        if let Some(truth) = self.parts.truths.get(body) {
-            sample.deviation = truth.borrow_mut().peek(subject, &sample, now.time);
-        }
+        self.parts.subjects.get(body)?;
+        let now = self.now().time;
+        let mut sample = self.parts.group_of(body).sample(body, now);
+        self.judge(body, &mut sample, now);
         Some(sample)
+    }
+
+    /// How far a body is from the truth, where that is known.
+    fn judge(&self, body: usize, sample: &mut Sample, now: f64) {
+        if let Some(truth) = self.parts.truths.get(body) {
+            let subject = &self.parts.subjects[body];
+            sample.deviation = truth.borrow_mut().peek(subject, sample, now);
+        }
     }
 
     /// The first body on a ray (world), as they are.
     pub fn pick(&self, ray_w: &Ray) -> Option<(usize, Picked)> {
         let bodies = self.parts.subjects.iter().enumerate();
-        let posed = bodies.map(|(k, subject)| (subject, self.group_of(k).motion_of(k)));
+        let posed = bodies.map(|(k, subject)| (subject, self.parts.group_of(k).motion_of(k)));
         pick::first_hit(ray_w, posed)
     }
 
     /// Delivers the poses of all bodies as they are.
     pub fn show(&self, sink: &mut dyn Sink) -> Result<(), SinkError> {
-        for group in &self.parts.groups {
-            let motions: Vec<Motion> = group.motions().collect();
-            sink.motions(&Track {
-                bodies: group.members.clone(),
-                instants: &[self.now()],
-                motions: &motions,
-            })?;
-        }
-        Ok(())
+        self.parts.deliver_motions(self.now(), sink)
     }
 
     /// What turns a body now, each by its name: what is applied, and the model's own terms; about the reference
@@ -394,8 +305,7 @@ impl Run {
     /// the list comes after it there.
     pub fn latest_here(&self) -> f64 {
         let now = self.now().time;
-        // As far apart as the clock takes two times for one (`schedule`).
-        let near = (4.0 * f64::EPSILON * now).max(1e-9 * self.scene.step);
+        let near = slack(now, self.scene.step);
         let times = self.scene.events.iter().flat_map(|event| {
             let over = event.at + event.action.lasts();
             [event.at, over]
@@ -403,14 +313,6 @@ impl Run {
         times
             .filter(|time| (time - now).abs() <= near)
             .fold(now, f64::max)
-    }
-
-    /// What drifted so far.
-    pub fn warnings(&self) -> Vec<Warning> {
-        let watches = self.parts.watches.iter().map(RefCell::borrow);
-        watches
-            .flat_map(|watch| watch.told().cloned().collect::<Vec<_>>())
-            .collect()
     }
 
     /// By which method a body goes.

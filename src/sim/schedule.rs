@@ -326,7 +326,12 @@ fn bands(scene: &Scene) -> Vec<Band> {
 /// A remainder below this part of a step is rounding in `t/h` (relative 2⁻⁵³, so a few units of
 /// that times the step count), never a step of its own.
 fn rounding(steps: f64) -> f64 {
-    (4.0 * f64::EPSILON * steps).max(1e-9)
+    slack(steps, 1.0)
+}
+
+/// How far apart two times are at most (s) that the clock, in steps of `h`, takes for one.
+pub fn slack(t: f64, h: f64) -> f64 {
+    (4.0 * f64::EPSILON * t).max(1e-9 * h)
 }
 
 fn node(time: f64, h: f64) -> Node {
