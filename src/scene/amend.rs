@@ -276,10 +276,10 @@ fn family(top: &DeTable<'_>, base: &str, kind: &str) -> Vec<(String, bool)> {
     let mut family: Vec<(usize, String, bool)> = own
         .filter_map(|(name, _, short)| Some((number(&name)?, name, short)))
         .collect();
+    family.sort();
     if family.first().is_none_or(|(number, ..)| *number != 1) {
         return Vec::new();
     }
-    family.sort();
     family
         .into_iter()
         .map(|(_, name, short)| (name, short))

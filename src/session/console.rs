@@ -404,13 +404,15 @@ impl Console {
                 break;
             }
             let taken = self.session.now().step.saturating_sub(before.0);
-            if taken < self.chunk || now - began >= TURN {
-                break;
-            }
+            let whole = taken == self.chunk;
             // As many at a time as take a tenth of a turn.
             match now - before.1 < 0.1 * TURN {
-                true => self.chunk = (2 * self.chunk).min(LONGEST_CHUNK),
+                true if whole => self.chunk = (2 * self.chunk).min(LONGEST_CHUNK),
+                true => {}
                 false => self.chunk = (self.chunk / 2).max(1),
+            }
+            if !whole || now - began >= TURN {
+                break;
             }
         }
         said.pacing = self.pace.pacing(clock.seconds(), self.session.now().time);
