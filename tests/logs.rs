@@ -490,6 +490,49 @@ fn bad_rows_are_told_and_the_rest_is_kept() {
     assert_eq!(report.count(Bad::NotANumber), 1000);
 }
 
+/// What brings no number, too much, or comes late.
+#[test]
+fn rows_that_say_nothing_and_rows_that_say_more_are_no_harm() {
+    let row = "{\"t\":0,\"qx\":0,\"qy\":0,\"qz\":0,\"qw\":1}\n";
+    // The first rows have no columns at all.
+    for first in ["{}\n", "{\"a\":{}}\n", "{}\n{\"a\":[]}\n"] {
+        let (log, report) = read(&format!("{first}{row}"));
+        assert_eq!(log.bodies[0].rows.len(), 1, "{first}");
+        assert!(report.left_out() > 0, "{first}");
+    }
+    // One row with too many fields makes none of the others wrong.
+    let many: Vec<String> = (0..5000).map(|k| format!("\"k{k}\":{k}")).collect();
+    let (log, report) = read(&format!("{{{}}}\n{row}", many.join(",")));
+    assert_eq!(log.bodies[0].rows.len(), 1);
+    assert_eq!(report.count(Bad::TooLong), 1);
+    // Whose axes it is in is known when the column comes.
+    let turned = |extra: &str| {
+        format!(
+            "{{\"t\":1,\"qx\":0,\"qy\":0,\"qz\":0.7071067811865476,\"qw\":0.7071067811865476{extra}}}\n"
+        )
+    };
+    let gyro = ",\"gyro_x\":1,\"gyro_y\":0,\"gyro_z\":0";
+    let rows = rows(&format!("{row}{}", turned(gyro)), &[]);
+    let omega = rows[1].omega.unwrap();
+    // Turned by a quarter about z; the rounding of two products.
+    assert!(
+        (omega[0].abs() + (omega[1] - 1.0).abs()) < 1e-15,
+        "{omega:?}"
+    );
+}
+
+/// Time that no number counts.
+#[test]
+fn times_are_finite() {
+    let text = "header.stamp.sec,header.stamp.nanosec,qx,qy,qz,qw\n\
+        1.7976931348623157e308,1.7976931348623157e308,0,0,0,1\n2,0,0,0,0,1\n";
+    let (log, report) = read(text);
+    assert_eq!(report.count(Bad::NotFinite), 1);
+    assert!(log.bodies[0].rows.times.iter().all(|t| t.is_finite()));
+    let (log, _) = read("t,qx,qy,qz,qw\n-1.7e308,0,0,0,1\n1.7e308,0,0,0,1\n");
+    assert!(log.bodies[0].rows.times.iter().all(|t| t.is_finite()));
+}
+
 #[test]
 fn bad_lines_of_json_are_told_where_they_are() {
     let text = "{\"t\": 0, \"w\": [1, 0, 0]}\n\
@@ -1375,6 +1418,11 @@ proptest! {
         let mut text = "{\"t\":0,\"w\":[1,2,3]}\n".to_owned();
         text += &lines.join("\n");
         holds(text.as_bytes(), &[], Reading::AsDeclared);
+    }
+
+    #[test]
+    fn any_json_may_come_first(lines in prop::collection::vec("[{}\\[\\]\",:0-9a-ctwqNe. -]{0,40}", 0..20)) {
+        holds(lines.join("\n").as_bytes(), &[], Reading::AsDeclared);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{Told, Wrong, print};
 use crate::diagnose::{Answer, Evidence, Verdict, cause, diagnose};
-use crate::log::{Log, Mapping, Options, Reading, Report, bodies, read::Note};
+use crate::log::{Log, Mapping, Options, Reading, Report, bodies};
 use serde_json::{Value, json};
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -33,15 +33,20 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (mut log, mut report) = read(&arguments.log, &arguments.map)?;
+    // Of the bodies' own file, in its lines.
+    let mut notes = Vec::new();
     if let Some(file) = &arguments.bodies {
-        let (declared, notes) = bodies::load(file).map_err(|error| Wrong(error.to_string()))?;
-        report.notes.extend(notes);
+        let (declared, told) = bodies::load(file).map_err(|error| Wrong(error.to_string()))?;
+        let name = file.display().to_string();
+        notes.extend(told.into_iter().map(|note| (note.code, note.told(&name))));
         report.notes.extend(log.declare(declared));
     }
     let verdicts: Vec<Verdict> = log.bodies.iter().map(diagnose).collect();
     match arguments.json {
-        true => print::json(&object(&verdicts, &report))?,
+        true => print::json(&object(&verdicts, &report, &notes))?,
         false => {
+            print::err(&format!("{}: {}", report.file, report.columns));
+            notes.iter().for_each(|(_, told)| print::err(told));
             let told = report.to_string();
             if !told.is_empty() {
                 print::err(&told);
@@ -85,14 +90,18 @@ fn read(path: &Path, mappings: &[Mapping]) -> anyhow::Result<(Log, Report)> {
     done.map_err(|error| Wrong(error.to_string()).into())
 }
 
-fn object(verdicts: &[Verdict], report: &Report) -> Value {
+fn object(verdicts: &[Verdict], report: &Report, notes: &[(&str, String)]) -> Value {
     let bodies: Vec<Value> = verdicts.iter().map(Verdict::to_json).collect();
-    let note = |note: &Note| json!({"code": note.code, "text": note.told(&report.file)});
+    let own = report.notes.iter();
+    let own = own.map(|note| (note.code, note.told(&report.file)));
+    let notes = own.chain(notes.iter().cloned());
+    let notes = notes.map(|(code, text)| json!({"code": code, "text": text}));
     json!({
         "bodies": bodies,
         "rows": report.rows,
         "left_out": report.left_out(),
-        "notes": report.notes.iter().map(note).collect::<Vec<_>>(),
+        "columns": report.columns.to_string(),
+        "notes": notes.collect::<Vec<_>>(),
     })
 }
 

@@ -40,6 +40,9 @@ pub struct Question {
     pub remedy: String,
 }
 
+/// Bytes of a name beyond which nothing is looked for in it: no spelling is longer, whatever goes before it.
+const LONGEST_NAME: usize = 256;
+
 /// Columns beyond which a table is no log of bodies.
 pub const MOST_COLUMNS: usize = 4096;
 
@@ -323,7 +326,7 @@ impl Search<'_> {
         }
         self.clocks(&mut candidates);
         for quantity in Quantity::ALL {
-            self.choose(quantity, &candidates, false);
+            self.choose(quantity, &candidates);
         }
         self.either(&candidates);
     }
@@ -331,7 +334,8 @@ impl Search<'_> {
     /// Every key that a column can be read as, under what goes before it.
     fn readings(&self) -> HashMap<(String, usize, String), Vec<Reading>> {
         let mut readings: HashMap<_, Vec<Reading>> = HashMap::new();
-        for (column, name) in self.names.iter().enumerate() {
+        let names = self.names.iter().enumerate();
+        for (column, name) in names.filter(|(_, name)| name.len() <= LONGEST_NAME) {
             for (before, left_out, rest) in without_paths(name) {
                 for (key, unit) in without_units(rest) {
                     let place = (before.to_owned(), left_out, key);
@@ -376,15 +380,15 @@ impl Search<'_> {
     }
 
     /// Takes the best of a quantity's candidates, or asks.
-    fn choose(&mut self, quantity: Quantity, candidates: &[Candidate], either: bool) {
+    fn choose(&mut self, quantity: Quantity, candidates: &[Candidate]) {
         if self.has(quantity) {
             return;
         }
         let mut of: Vec<&Candidate> = candidates
             .iter()
-            .filter(|c| c.spelling.quantity == quantity && c.spelling.either == either)
+            .filter(|c| c.spelling.quantity == quantity && !c.spelling.either)
             .collect();
-        if quantity == Quantity::Position && !either {
+        if quantity == Quantity::Position {
             // x, y, z beside w may be an attitude.
             let bare = |c: &&Candidate| matches!(c.spelling.names, super::spellings::Names::Exactly(n) if n[0] == "x");
             let quaternion = candidates
@@ -585,12 +589,9 @@ impl Search<'_> {
         if !self.questions.is_empty() {
             return;
         }
-        let mapped: Vec<&Mapping> = self
-            .mappings
-            .iter()
-            .filter(|m| m.columns == Source::Recognised && !self.has(m.quantity))
-            .collect();
-        if let Some(mapping) = mapped.first() {
+        let mut mappings = self.mappings.iter();
+        let lacking = |m: &&Mapping| m.columns == Source::Recognised && !self.has(m.quantity);
+        if let Some(mapping) = mappings.find(lacking) {
             let (what, name) = (
                 format!(
                     "{mapping}: no column is recognised as {}",

@@ -116,11 +116,6 @@ pub struct Conventions {
 }
 
 impl Conventions {
-    /// The crate's own.
-    pub fn plain() -> Self {
-        Self::declared(Frame::World, false)
-    }
-
     /// As a log is declared.
     pub fn declared(frame: Frame, conjugated: bool) -> Self {
         Self {
@@ -226,7 +221,6 @@ pub struct Found {
     pub fitting: Vec<Fit>,
     /// The best of those that do not fit: how far behind it is says how sure the answer is.
     pub next: Option<Fit>,
-    pub windows: usize,
 }
 
 /// What a search came to, in a word.
@@ -345,12 +339,13 @@ pub fn search(rows: &Kinematics) -> Result<Found, CannotTell> {
     let widest = WIDEST.min((usable - 1) * 2 / (FEWEST_WINDOWS + 1));
     let width = ((turns.len() as f64 / turned) as usize).clamp(NARROWEST, widest.max(NARROWEST));
     let windows = Windows::new(rows, &turns, width);
+    if windows.starts.len() < FEWEST_WINDOWS {
+        return Err(CannotTell::TooFew(usable));
+    }
     let mut fits = Vec::new();
-    let mut seen = 0;
     for conventions in Conventions::every() {
         for a in [1.0, 0.5, 0.0] {
             let sums = windows.sums(rows, &conventions, a);
-            seen = sums.windows;
             for time in &TIME_FACTORS {
                 for omega in &OMEGA_FACTORS {
                     let conventions = Conventions {
@@ -367,14 +362,11 @@ pub fn search(rows: &Kinematics) -> Result<Found, CannotTell> {
             }
         }
     }
-    if seen < FEWEST_WINDOWS {
-        return Err(CannotTell::TooFew(usable));
-    }
-    Ok(judged(fits, rows.declared, seen))
+    Ok(judged(fits, rows.declared))
 }
 
 /// The best of each convention, and which of them fit.
-fn judged(mut fits: Vec<Fit>, declared: Conventions, windows: usize) -> Found {
+fn judged(mut fits: Vec<Fit>, declared: Conventions) -> Found {
     fits.sort_by(|a, b| a.residual.total_cmp(&b.residual));
     let mut each: Vec<Fit> = Vec::new();
     for fit in fits {
@@ -409,7 +401,6 @@ fn judged(mut fits: Vec<Fit>, declared: Conventions, windows: usize) -> Found {
         best,
         next: next.copied(),
         fitting,
-        windows,
     }
 }
 
@@ -425,7 +416,6 @@ struct Sums {
     dd: f64,
     dv: f64,
     vv: f64,
-    windows: usize,
 }
 
 impl Windows {
@@ -465,7 +455,6 @@ impl Windows {
             dd: 0.0,
             dv: 0.0,
             vv: 0.0,
-            windows: self.starts.len(),
         };
         for &start in &self.starts {
             let (mut d, mut v) = (Vector3::zeros(), Vector3::zeros());

@@ -176,7 +176,7 @@ impl Unit {
     }
 
     fn is_called(&self, key: &str) -> bool {
-        self.written().iter().any(|name| plain(name) == key)
+        plain(self.name) == key || self.spellings.iter().any(|name| plain(name) == key)
     }
 }
 

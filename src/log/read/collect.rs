@@ -29,11 +29,11 @@ impl Log {
         progress: Progress<'_>,
     ) -> Result<(Self, Report), LogError> {
         let mut reader = Reader::new(file, input, options)?;
-        let mut gathered: Vec<Gathered> = Vec::new();
+        let mut gathered: Vec<Rows> = Vec::new();
         let mut rows = 0;
         while let Some(row) = reader.next_row()? {
             if gathered.len() <= row.body {
-                gathered.resize_with(row.body + 1, Gathered::default);
+                gathered.resize_with(row.body + 1, Rows::default);
             }
             gathered[row.body].push(&row);
             rows += 1;
@@ -49,9 +49,8 @@ impl Log {
         let own = reader.columns().is_own_export();
         let names: Vec<String> = reader.bodies().map(str::to_owned).collect();
         let mut bodies = Vec::new();
-        for (name, gathered) in names.into_iter().zip(gathered) {
-            let (rows, notes) = gathered.into_rows(&name, own);
-            report.notes.extend(notes);
+        for (name, mut rows) in names.into_iter().zip(gathered) {
+            report.notes.extend(rows.finish(&name, own));
             // A body all of whose rows are left out is said, and is none.
             if !rows.is_empty() {
                 bodies.push(Logged {
@@ -65,20 +64,8 @@ impl Log {
     }
 }
 
-/// A body's rows while they come, NaN where a quantity is missing; empty where it was never there.
-#[derive(Default)]
-struct Gathered {
-    times: Vec<f64>,
-    attitudes: Vec<[f64; 4]>,
-    positions: Vec<[f64; 3]>,
-    omegas: Vec<[f64; 3]>,
-    velocities: Vec<[f64; 3]>,
-    torques: Vec<[f64; 3]>,
-    forces: Vec<[f64; 3]>,
-    points: Vec<[f64; 3]>,
-}
-
-impl Gathered {
+/// While they come, NaN stands where a quantity is missing; one that was never there is empty.
+impl Rows {
     fn push(&mut self, row: &Row) {
         // The last row of an instant is what the next step begins with; what it does not say of the state still holds.
         if row.again {
@@ -95,22 +82,13 @@ impl Gathered {
         put(&mut self.points, at, row.point, false);
     }
 
-    fn into_rows(mut self, name: &str, own: bool) -> (Rows, Vec<Note>) {
+    /// Makes them whole; what there is to say of it.
+    fn finish(&mut self, name: &str, own: bool) -> Vec<Note> {
         let mut notes = Vec::new();
         let mut note = |code, what: String| notes.push(Note::new(code, what).of(name));
         self.whole(&mut note);
         self.loads(own, &mut note);
-        let rows = Rows {
-            times: self.times,
-            positions: self.positions,
-            attitudes: self.attitudes,
-            omegas: self.omegas,
-            velocities: self.velocities,
-            torques: self.torques,
-            forces: self.forces,
-            points: self.points,
-        };
-        (rows, notes)
+        notes
     }
 
     /// Keeps the rows that have the whole state.

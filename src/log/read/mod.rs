@@ -359,7 +359,7 @@ impl<R: BufRead> Reader<R> {
 
     /// The next row; `None` at the end. Rows that cannot be read are in the [`report`](Self::report).
     pub fn next_row(&mut self) -> Result<Option<Row>, LogError> {
-        if self.conventions.is_none() {
+        if self.conventions.is_none() && self.options.reading == Reading::AsFound {
             self.settle()?;
         }
         let raw = match self.held.pop_front() {
@@ -370,18 +370,8 @@ impl<R: BufRead> Reader<R> {
         Ok(raw.map(|raw| self.plan.turned(raw, &conventions)))
     }
 
-    /// Decides by which conventions rows are turned.
+    /// Decides by which conventions rows are turned, from as many of them as say it.
     fn settle(&mut self) -> Result<(), LogError> {
-        if self.options.reading != Reading::AsFound {
-            // Of JSON lines not known before the first row.
-            if self.held.is_empty()
-                && let Some(raw) = self.next_raw()?
-            {
-                self.held.push_back(raw);
-            }
-            self.conventions = Some(self.plan.declared);
-            return Ok(());
-        }
         while self.held.len() < HELD
             && let Some(raw) = self.next_raw()?
         {
@@ -466,7 +456,10 @@ impl<R: BufRead> Reader<R> {
                         }
                         Line::Row { grown: true } => {
                             let names = lines.names.clone();
-                            self.find_columns(&names, line)?;
+                            if let Err(why) = self.find_columns(&names, line) {
+                                self.ended = true;
+                                return Err(why);
+                            }
                         }
                         Line::Row { grown: false } => {}
                     }
@@ -489,17 +482,19 @@ impl<R: BufRead> Reader<R> {
                     return Ok(Some(raw));
                 }
                 Err(Refused::Row(wrong)) => {
-                    let name = |k: usize| shown(&self.columns.names()[k]);
+                    // Of JSON lines there may be none yet.
+                    let named = |k: usize| Some((k + 1, shown(self.columns.names().get(k)?)));
                     self.report.bad(BadRow {
                         kind: wrong.kind,
                         line: wrong.line,
-                        column: wrong.column.map(|k| (k + 1, name(k))),
+                        column: wrong.column.and_then(named),
                         what: wrong.what,
                     });
                 }
                 Err(Refused::TooManyBodies(line)) => {
                     self.ended = true;
-                    let column = self.plan.body.map(|k| shown(&self.columns.names()[k]));
+                    let column = self.plan.body.or(self.plan.run);
+                    let column = column.map(|k| shown(&self.columns.names()[k]));
                     return Err(LogError::TooManyBodies {
                         file: self.file.clone(),
                         line,
@@ -908,6 +903,13 @@ fn time(
     if let Some(rest) = plan.time[1] {
         seconds += number(rest)?.ok_or_else(|| nothing(rest))? / 1e9;
     }
+    let beyond = || {
+        let what = "is too large in its unit to be a time".to_owned();
+        wrong(Bad::NotFinite, column, what)
+    };
+    if !seconds.is_finite() {
+        return Err(beyond());
+    }
     if *origin == Origin::Zero {
         return Ok(seconds);
     }
@@ -926,12 +928,16 @@ fn time(
             (false, None) => Origin::Rounded(seconds),
         };
     }
-    Ok(match (*origin, exact()) {
+    let counted = match (*origin, exact()) {
         (Origin::Open | Origin::Zero, _) => seconds,
         (Origin::Exact(first), Some(exact)) => exact.saturating_sub(first) as f64 / 1e12,
         (Origin::Exact(first), None) => seconds - first as f64 / 1e12,
         (Origin::Rounded(first), _) => seconds - first,
-    })
+    };
+    match counted.is_finite() {
+        true => Ok(counted),
+        false => Err(beyond()),
+    }
 }
 
 impl Plan {

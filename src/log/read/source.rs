@@ -3,6 +3,7 @@
 use csv::ByteRecord;
 use serde_json::Value;
 use std::collections::HashMap;
+use std::fmt::Write as _;
 use std::io::{self, BufRead, Read};
 
 /// Bytes of one row at most.
@@ -182,7 +183,13 @@ impl<R: BufRead> Lines<R> {
                 true => Line::Row {
                     grown: self.names.len() > known,
                 },
-                false => Line::Wrong(WrongLine::TooManyFields),
+                false => {
+                    // What it brought is none of the log's.
+                    self.names.truncate(known);
+                    self.cells.truncate(known);
+                    self.places.retain(|_, place| *place < known);
+                    Line::Wrong(WrongLine::TooManyFields)
+                }
             });
         }
     }
@@ -230,7 +237,8 @@ impl<R: BufRead> Lines<R> {
                 goes
             }),
             Value::Array(items) => items.into_iter().enumerate().all(|(k, value)| {
-                path.push_str(&format!("[{k}]"));
+                // Into a text it always goes.
+                let _ = write!(path, "[{k}]");
                 let goes = self.flatten(value, path);
                 path.truncate(length);
                 goes
