@@ -48,7 +48,7 @@ pub fn centre(m: &Motion, positions: &[[f64; 3]], force: &[Vector3<f64>]) -> Opt
         .map_or(0.0, |p| p.last().map_or(0.0, Vector3::norm));
     // A column of nothing would make the equations singular: it is replaced by one that no row has.
     let has_force = pushed > 1e-9 * span * span;
-    let mut squares = Squares::<14>::new();
+    let mut squares = Squares::<13>::new();
     let apart = (n / 4_000).max(1);
     let first = Vector3::from(positions[0]);
     for k in (0..n).step_by(apart) {
@@ -59,7 +59,7 @@ pub fn centre(m: &Motion, positions: &[[f64; 3]], force: &[Vector3<f64>]) -> Opt
         let t = (m.times[k] - m.times[0]) / span;
         let r = m.q[k].to_rotation_matrix();
         for axis in 0..3 {
-            let mut row = SVector::<f64, 14>::zeros();
+            let mut row = SVector::<f64, 13>::zeros();
             row[axis] = 1.0;
             row[3 + axis] = t;
             row[6 + axis] = t * t;
@@ -73,12 +73,9 @@ pub fn centre(m: &Motion, positions: &[[f64; 3]], force: &[Vector3<f64>]) -> Opt
             squares.add(&row, x[axis]);
         }
     }
-    // Dummies, so that what is absent comes out as zero.
-    let mut dummy = SVector::<f64, 14>::zeros();
-    dummy[13] = 1.0;
-    squares.add(&dummy, 0.0);
+    // A dummy, so that what is absent comes out as zero.
     if !has_force {
-        dummy = SVector::zeros();
+        let mut dummy = SVector::zeros();
         dummy[12] = 1.0;
         squares.add(&dummy, 0.0);
     }

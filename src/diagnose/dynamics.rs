@@ -284,6 +284,11 @@ impl<'a> Dynamics<'a> {
         self.steps.noise * 3.0_f64.sqrt()
     }
 
+    /// Whether a law holds; one whose numbers end does not.
+    pub fn holds(&self, fit: &Fit) -> bool {
+        fit.left.is_finite() && fit.left <= self.bound(fit)
+    }
+
     /// Up to which error a law holds.
     pub fn bound(&self, fit: &Fit) -> f64 {
         let (turn, speed) = (self.motion.turn, self.motion.speed);
@@ -349,10 +354,13 @@ impl<'a> Dynamics<'a> {
         let mut all = Vec::new();
         for cause in CAUSES {
             match cause.judge {
-                Judge::Laws(laws) => all.extend(laws.iter().filter_map(|law| {
-                    let fit = self.fit(*law).filter(|f| f.left.is_finite())?;
-                    Some(Explained::new(cause.id, fit).faults(law.faults()))
-                })),
+                Judge::Laws(laws) => {
+                    let laws = laws.iter().flat_map(|law| with_and_without(*law));
+                    all.extend(laws.filter_map(|law| {
+                        let fit = self.fit(law).filter(|f| f.left.is_finite())?;
+                        Some(Explained::new(cause.id, fit).faults(law.faults()))
+                    }));
+                }
                 Judge::Fitted(judge) => all.extend(judge(self).filter(|e| e.fit.left.is_finite())),
                 _ => {}
             }
@@ -360,6 +368,13 @@ impl<'a> Dynamics<'a> {
         all.sort_by(|a, b| a.fit.left.total_cmp(&b.fit.left));
         all
     }
+}
+
+/// An engine that is wrong in one way may leave the gyroscopic term out besides.
+fn with_and_without(law: Law) -> impl Iterator<Item = Law> {
+    let besides = law.gyroscopic(Gyroscopic::Off);
+    let is_on = law.gyroscopic == Gyroscopic::On;
+    std::iter::once(law).chain(is_on.then_some(besides))
 }
 
 /// Explicit is ½, implicit -½; a little more for what is fitted.
@@ -410,7 +425,7 @@ pub fn judge(case: &Case, m: &Motion) -> Judged {
                 );
                 return judged;
             }
-            let right_holds = d.right().is_some_and(|r| r.fit.left <= d.bound(&r.fit));
+            let right_holds = d.right().is_some_and(|r| d.holds(&r.fit));
             if right_holds && let Some(outcome) = round(&d, &mut judged.untested) {
                 judged.left_out = left_out(&d);
                 judged.outcome = outcome;
@@ -492,8 +507,7 @@ fn left_out(d: &Dynamics) -> Vec<LeftOut> {
 /// None where nothing explains the windows.
 fn round(d: &Dynamics, untested: &mut Vec<String>) -> Option<Outcome> {
     let right = d.right()?;
-    let holds = right.fit.left <= d.bound(&right.fit);
-    if holds {
+    if d.holds(&right.fit) {
         return Some(held(d, &right, untested));
     }
     let others = d.others();

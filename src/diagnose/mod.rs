@@ -120,9 +120,6 @@ fn by_dynamics(case: &Case, mut verdict: Verdict) -> Verdict {
                 return accuse(verdict, found);
             }
             let left = evidence.first().map_or(0.0, |e| e.value);
-            if !left.is_finite() {
-                return beyond(verdict);
-            }
             verdict.answer = Answer::NoFault;
             verdict.cause = if m.flips.is_empty() {
                 "none"
@@ -200,17 +197,7 @@ fn cannot_tell(mut verdict: Verdict, why: String, remedy: String) -> Verdict {
     verdict
 }
 
-/// Numbers that end on the way are no ground for anything.
-fn beyond(verdict: Verdict) -> Verdict {
-    let why = "what is declared or logged is too large or too small to be computed with in 64-bit numbers";
-    let remedy = "look for a mass or an inertia of nothing, and for quantities in other units";
-    cannot_tell(verdict, why.to_owned(), remedy.to_owned())
-}
-
 fn accuse(mut verdict: Verdict, found: Found) -> Verdict {
-    if !found.confidence.is_finite() {
-        return beyond(verdict);
-    }
     let first = found.causes.first().copied().unwrap_or("cannot-tell");
     verdict.answer = Answer::Fault;
     verdict.cause = first;

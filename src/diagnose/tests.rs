@@ -4,9 +4,10 @@ use super::case::Case;
 use super::kinematics::{Frame, Scale};
 use super::motion::Motion;
 use super::{Answer, CAUSES, diagnose};
+use crate::exact::FreeMotion;
 use crate::log::{Declared, Logged, Rows};
 use crate::math::{axis_angle, exponential};
-use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, Unit, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 /// A turning that is no solution of anything, in closed form: q = exp(a(t)) exp(b(t)), so that ω is known exactly.
@@ -176,6 +177,70 @@ fn vectors(rows: usize) -> impl Strategy<Value = Vec<[f64; 3]>> {
     let some = proptest::collection::vec([number(), number(), number()], rows);
     let short = proptest::collection::vec([number(), number(), number()], 0..3);
     prop_oneof![5 => some, 2 => Just(Vec::new()), 1 => short]
+}
+
+/// Turns about z by angles a row, as logged and as they are.
+fn about_z(rates: impl Iterator<Item = (f64, f64)>) -> Rows {
+    let mut log = Rows::default();
+    let mut angle: f64 = 0.0;
+    for (k, (rate, logged)) in rates.enumerate() {
+        let (sin, cos) = libm::sincos(0.5 * angle);
+        log.times.push(0.01 * k as f64);
+        log.attitudes.push([0.0, 0.0, sin, cos]);
+        log.omegas.push([0.0, 0.0, logged]);
+        angle += 0.01 * rate;
+    }
+    log
+}
+
+/// What is wrong in windows that the search left out is no reading of the others.
+#[test]
+fn a_log_that_is_off_here_and_there_has_a_verdict() {
+    let burst = (0..1201).map(|k| if k < 1080 { (0.1, 0.11) } else { (20.0, 20.5) });
+    let in_turn = (0..1921).map(|k| (2.0, if k / 12 % 2 == 0 { 2.0 } else { 3.0 }));
+    for rows in [about_z(burst), about_z(in_turn)] {
+        let verdict = diagnose(&logged(rows, [1.0, 2.0, 2.5]));
+        assert_ne!(verdict.answer, Answer::NoFault, "{verdict:?}");
+    }
+}
+
+#[test]
+fn a_mass_that_is_none_is_not_physical() {
+    for mass in [0.0, -3.0, f64::NAN] {
+        let mut log = logged(turning(400, 0.01), [1.0, 2.0, 2.5]);
+        log.declared.as_mut().unwrap().mass = Some(mass);
+        let verdict = diagnose(&log);
+        assert_eq!(verdict.cause, "inertia-not-physical", "{mass}");
+    }
+}
+
+/// A torque that no number can be computed with spoils its own rows and no more.
+#[test]
+fn one_absurd_row_is_left_out() {
+    let moments = [1.0, 2.0, 2.5];
+    let mut rows = tumbling(moments, 400);
+    rows.torques = vec![[0.0; 3]; 400];
+    rows.torques[100] = [1e300, 0.0, 0.0];
+    let verdict = diagnose(&logged(rows, moments));
+    assert_eq!(verdict.answer, Answer::NoFault, "{verdict:?}");
+    let around = |left: &crate::diagnose::LeftOut| left.from <= 1.0 && 1.0 <= left.until;
+    assert!(verdict.left_out.iter().any(around), "{verdict:?}");
+}
+
+/// A free body that tumbles, in closed form.
+fn tumbling(moments: [f64; 3], count: usize) -> Rows {
+    let start = Vector3::new(0.4, 3.0, 0.7);
+    let motion = FreeMotion::new(moments.into(), Quaternion::identity(), start);
+    let mut log = Rows::default();
+    for k in 0..count {
+        let t = 0.01 * k as f64;
+        let (q, omega_b) = motion.at(t);
+        let omega = UnitQuaternion::new_normalize(q) * omega_b;
+        log.times.push(t);
+        log.attitudes.push([q.i, q.j, q.k, q.w]);
+        log.omegas.push(omega.into());
+    }
+    log
 }
 
 prop_compose! {

@@ -150,19 +150,19 @@ fn the_zoo() {
          some leave the gyroscopic term out besides. \"In a set\" is an answer of several causes that those data do not tell apart, the right one among \
          them. \"cannot-tell\" counts answers that a recording cannot tell though it could. Written by `UPDATE_GOLDEN=1 cargo test --test zoo`.\n",
     );
-    for (title, about, seeds) in [
-        (
-            "Tuned",
-            "Thresholds were set while looking at these.",
-            TUNED,
-        ),
+    // Both at once: they take as long as each other.
+    let found = std::thread::scope(|scope| {
+        let judging = [TUNED, UNSEEN].map(|seeds| scope.spawn(move || judged(seeds)));
+        judging.map(|thread| thread.join().unwrap())
+    });
+    let abouts = [
+        ("Tuned", "Thresholds were set while looking at these."),
         (
             "Unseen",
             "Other seeds: not looked at while thresholds were set.",
-            UNSEEN,
         ),
-    ] {
-        let (lines, accused) = judged(seeds);
+    ];
+    for ((title, about), (lines, accused)) in abouts.into_iter().zip(found) {
         let (right, sets, all) = share(&lines);
         writeln!(
             text,

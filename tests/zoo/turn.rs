@@ -39,13 +39,8 @@ pub fn apply(m: &M, v: V) -> V {
 }
 
 pub fn transposed(m: &M) -> M {
-    let mut t = *m;
-    for (i, row) in m.iter().enumerate() {
-        for (j, x) in row.iter().enumerate() {
-            t[j][i] = *x;
-        }
-    }
-    t
+    let [a, b, c] = *m;
+    [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]]
 }
 
 pub fn product(a: &M, b: &M) -> M {

@@ -15,12 +15,7 @@ pub(super) const PRODUCTS_SIGN: Cause = Cause {
     formula: "I_xy = -∫ x y dm",
     remedy: "negate the products; some CAD tools print them positive",
     example: "a body with products of inertia that tumbles",
-    judge: Judge::Laws(&[
-        Law::RIGHT.inertia(Inertia::Negated),
-        Law::RIGHT
-            .inertia(Inertia::Negated)
-            .gyroscopic(Gyroscopic::Off),
-    ]),
+    judge: Judge::Laws(&[Law::RIGHT.inertia(Inertia::Negated)]),
 };
 
 pub(super) const PRODUCTS_DROPPED: Cause = Cause {
@@ -31,12 +26,7 @@ pub(super) const PRODUCTS_DROPPED: Cause = Cause {
     formula: "all six entries, or the principal moments with their axes",
     remedy: "diagonalise and keep the axes' rotation, or keep the whole tensor",
     example: "a body with products of inertia that tumbles",
-    judge: Judge::Laws(&[
-        Law::RIGHT.inertia(Inertia::Dropped),
-        Law::RIGHT
-            .inertia(Inertia::Dropped)
-            .gyroscopic(Gyroscopic::Off),
-    ]),
+    judge: Judge::Laws(&[Law::RIGHT.inertia(Inertia::Dropped)]),
 };
 
 pub(super) const SCALE: Cause = Cause {

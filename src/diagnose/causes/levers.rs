@@ -1,7 +1,7 @@
 //! `τ = (p - c) × f`: from where the lever goes. A body that begins at the world's origin and stays there tells none of them apart.
 
 use super::{Cause, Judge};
-use crate::diagnose::law::{Gyroscopic, Law, Lever};
+use crate::diagnose::law::{Law, Lever};
 
 pub(super) const STALE: Cause = Cause {
     id: "lever-point-stale",
@@ -11,12 +11,7 @@ pub(super) const STALE: Cause = Cause {
     formula: "τ = (p - c) × f with c as it is now",
     remedy: "update the centre of mass in the world at every step, before forces are added",
     example: "a force at a point of a body that has travelled",
-    judge: Judge::Laws(&[
-        Law::RIGHT.lever(Lever::FirstCentre),
-        Law::RIGHT
-            .lever(Lever::FirstCentre)
-            .gyroscopic(Gyroscopic::Off),
-    ]),
+    judge: Judge::Laws(&[Law::RIGHT.lever(Lever::FirstCentre)]),
 };
 
 pub(super) const FROM_ORIGIN: Cause = Cause {
@@ -29,12 +24,6 @@ pub(super) const FROM_ORIGIN: Cause = Cause {
     example: "a force at a point of a body away from the origin",
     judge: Judge::Laws(&[
         Law::RIGHT.lever(Lever::WorldOrigin),
-        Law::RIGHT
-            .lever(Lever::WorldOrigin)
-            .gyroscopic(Gyroscopic::Off),
         Law::RIGHT.lever(Lever::BodyOrigin),
-        Law::RIGHT
-            .lever(Lever::BodyOrigin)
-            .gyroscopic(Gyroscopic::Off),
     ]),
 };

@@ -1,7 +1,7 @@
 //! How long what acts goes on acting: for one step, whatever the sub-steps.
 
 use super::{Cause, Judge};
-use crate::diagnose::law::{Gyroscopic, Law, Life};
+use crate::diagnose::law::{Law, Life};
 
 pub(super) const LIFETIME: Cause = Cause {
     id: "force-lifetime",
@@ -15,8 +15,5 @@ pub(super) const LIFETIME: Cause = Cause {
         Law::RIGHT.life(Life::Ever),
         Law::RIGHT.life(Life::TwoSteps),
         Law::RIGHT.life(Life::UntilNext),
-        Law::RIGHT.life(Life::Ever).gyroscopic(Gyroscopic::Off),
-        Law::RIGHT.life(Life::TwoSteps).gyroscopic(Gyroscopic::Off),
-        Law::RIGHT.life(Life::UntilNext).gyroscopic(Gyroscopic::Off),
     ]),
 };

@@ -1,7 +1,7 @@
 //! Which tensor stands for I in the world: `R I Rᵀ` is right, `I`, `Rᵀ I R` and an I that is never inverted are not.
 
 use super::{Cause, Judge};
-use crate::diagnose::law::{Gyroscopic, Inertia, Law, Map};
+use crate::diagnose::law::{Inertia, Law, Map};
 
 pub(super) const NOT_ROTATED: Cause = Cause {
     id: "inertia-not-rotated",
@@ -11,10 +11,7 @@ pub(super) const NOT_ROTATED: Cause = Cause {
     formula: "I_w⁻¹ = R I⁻¹ Rᵀ",
     remedy: "rotate the inverse inertia at every step",
     example: "a tilted, unequal body under a torque in several directions",
-    judge: Judge::Laws(&[
-        Law::RIGHT.map(Map::NotRotated),
-        Law::RIGHT.map(Map::NotRotated).gyroscopic(Gyroscopic::Off),
-    ]),
+    judge: Judge::Laws(&[Law::RIGHT.map(Map::NotRotated)]),
 };
 
 pub(super) const BACKWARDS: Cause = Cause {
@@ -25,10 +22,7 @@ pub(super) const BACKWARDS: Cause = Cause {
     formula: "I_w = R I Rᵀ, R body to world",
     remedy: "swap R and Rᵀ; check against a body turned by 90° about an axis",
     example: "a tilted, unequal body under a torque in several directions",
-    judge: Judge::Laws(&[
-        Law::RIGHT.map(Map::Backwards),
-        Law::RIGHT.map(Map::Backwards).gyroscopic(Gyroscopic::Off),
-    ]),
+    judge: Judge::Laws(&[Law::RIGHT.map(Map::Backwards)]),
 };
 
 pub(super) const NOT_INVERTED: Cause = Cause {
@@ -41,10 +35,6 @@ pub(super) const NOT_INVERTED: Cause = Cause {
     example: "an unequal body under a torque",
     judge: Judge::Laws(&[
         Law::RIGHT.map(Map::NotInverted),
-        Law::RIGHT.map(Map::NotInverted).gyroscopic(Gyroscopic::Off),
         Law::RIGHT.inertia(Inertia::Inverse),
-        Law::RIGHT
-            .inertia(Inertia::Inverse)
-            .gyroscopic(Gyroscopic::Off),
     ]),
 };

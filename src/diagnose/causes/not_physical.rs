@@ -10,7 +10,7 @@ use crate::math::symmetric_eigen;
 pub(super) const NOT_PHYSICAL: Cause = Cause {
     id: "inertia-not-physical",
     symptom: "refused at load; or wild spins about one axis and none about another",
-    test: "the declared tensor is symmetric, its moments are positive, none exceeds the sum of the others, and the radius of gyration is within the body",
+    test: "the mass is positive, the declared tensor is symmetric, its moments are positive, none exceeds the sum of the others, and the radius of gyration is within the body",
     does: "takes an inertia that no arrangement of mass has",
     formula: "I = Σ m (r² 1 - r rᵀ): λ₁ + λ₂ ≥ λ₃ > 0, and λ₃ ≤ m (half the diagonal)²",
     remedy: "take the inertia of the shape and the mass (`torquescope mass`), in kg m²; look for mixed-up units, or a tensor about another point",
@@ -54,9 +54,12 @@ fn judge(case: &Case) -> Said {
             .with("excess", l[2] / (l[0] + l[1]), ""),
         );
     }
-    if let (Some(size), Some(mass)) = (declared.size, declared.mass)
-        && mass > 0.0
+    if let Some(mass) = declared.mass
+        && (mass.is_nan() || mass <= 0.0)
     {
+        return Said::Fault(found("the mass is not positive".to_owned()).with("mass", mass, "kg"));
+    }
+    if let (Some(size), Some(mass)) = (declared.size, declared.mass) {
         // A hundredth for sizes that are rounded.
         let (gyration, half) = ((l[2] / mass).sqrt(), 0.5 * size.norm());
         if gyration > 1.01 * half && half > 0.0 {

@@ -1,7 +1,7 @@
 //! A torque that is in the world and is used as if it were in the body, or the other way.
 
 use super::{Cause, Judge};
-use crate::diagnose::law::{Gyroscopic, Law, Torque};
+use crate::diagnose::law::{Law, Torque};
 
 pub(super) const IN_BODY: Cause = Cause {
     id: "torque-in-body-frame",
@@ -14,11 +14,5 @@ pub(super) const IN_BODY: Cause = Cause {
     judge: Judge::Laws(&[
         Law::RIGHT.torque(Torque::TakenForBody),
         Law::RIGHT.torque(Torque::LeftInBody),
-        Law::RIGHT
-            .torque(Torque::TakenForBody)
-            .gyroscopic(Gyroscopic::Off),
-        Law::RIGHT
-            .torque(Torque::LeftInBody)
-            .gyroscopic(Gyroscopic::Off),
     ]),
 };
