@@ -627,21 +627,28 @@ fn a_partial_file_with_nothing_in_it_is_in_nobodys_way() {
     );
 }
 
-#[test]
-fn a_recovery_that_fails_leaves_nothing() {
-    let (folder, _, bytes) = recording(&SHORT.replace("duration = 0.5", "duration = 5.0"));
-    let cut = folder.path().join("cut.rrd");
-    std::fs::write(&cut, &bytes[..bytes.len() - 100]).unwrap();
-    // No file may be larger than some 50 KB, and that is no signal.
-    let script = "trap '' XFSZ; ulimit -f 100; exec $T recover cut.rrd";
+/// What a run says that fails with exit code 1 because no file may be larger than so many blocks of 512 bytes.
+fn without_room(folder: &Path, blocks: u32, arguments: &str) -> String {
+    // That a file is too large is no signal.
+    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec $T {arguments}");
     let done = Command::new("sh")
-        .current_dir(folder.path())
-        .args(["-c", script])
+        .current_dir(folder)
+        .args(["-c", &script])
         .env("T", cargo_bin("torquescope"))
         .output()
         .unwrap();
     let why = said(&done.stderr);
     assert_eq!(done.status.code(), Some(1), "{why}");
+    why
+}
+
+#[test]
+fn a_recovery_that_fails_leaves_nothing() {
+    let (folder, _, bytes) = recording(&SHORT.replace("duration = 0.5", "duration = 5.0"));
+    let cut = folder.path().join("cut.rrd");
+    std::fs::write(&cut, &bytes[..bytes.len() - 100]).unwrap();
+    // Some 50 KB.
+    let why = without_room(folder.path(), 100, "recover cut.rrd");
     assert!(why.contains("File too large"), "{why}");
     let mut names: Vec<String> = std::fs::read_dir(folder.path())
         .unwrap()
@@ -656,16 +663,8 @@ fn a_recovery_that_fails_leaves_nothing() {
 fn what_waited_is_kept_when_there_is_no_more_room() {
     let scene = endless().replace("[record]\n", "[record]\nrate = 1\n");
     let folder = folder_with(&scene);
-    // No file may be larger than 6 MB: some 50 s of states, of numbers a fifth of a chunk.
-    let script = "trap '' XFSZ; ulimit -f 12000; exec $T run s.toml --save-every 0";
-    let done = Command::new("sh")
-        .current_dir(folder.path())
-        .args(["-c", script])
-        .env("T", cargo_bin("torquescope"))
-        .output()
-        .unwrap();
-    let why = said(&done.stderr);
-    assert_eq!(done.status.code(), Some(1), "{why}");
+    // 6 MB: some 50 s of states, of numbers a fifth of a chunk.
+    let why = without_room(folder.path(), 12_000, "run s.toml --save-every 0");
     assert!(why.contains("writing stopped: File too large"), "{why}");
     let done = output(folder.path(), &["recover", "s.partial.rrd", "--json"]);
     assert!(done.status.success(), "{}", said(&done.stderr));
